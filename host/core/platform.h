@@ -1,0 +1,22 @@
+// Everything that differs between operating systems, in one place: interrupts, terminals, durable file replacement.
+#pragma once
+
+#include <filesystem>
+
+namespace isolux {
+
+/// From now on Ctrl-C (SIGINT, SIGTERM) sets a flag; a second one ends the process at once.
+void catchInterrupts();
+[[nodiscard]] bool interruptRequested() noexcept;
+
+/// Whether standard error is a terminal (progress bars are drawn only there), and its width in columns.
+[[nodiscard]] bool standardErrorIsTerminal();
+[[nodiscard]] int terminalColumns();
+
+/// Flushes `temporary` to disk, then renames it to `target`, replacing it atomically. Throws Error.
+void replaceFile(const std::filesystem::path& temporary, const std::filesystem::path& target);
+
+/// A number that differs between running processes, for temporary names.
+[[nodiscard]] unsigned long processId();
+
+} // namespace isolux

@@ -1,0 +1,54 @@
+#include "film/film.h"
+
+namespace isolux {
+
+void PixelStatistics::add(const Vec3d& radiance) {
+    ++sampleCount;
+    const Vec3d before = radiance - mean;
+    mean += before / static_cast<double>(sampleCount);
+    const Vec3d after = radiance - mean;
+    squaredDeviation += before * after;
+    luminanceSquaredDeviation += luminance(before) * luminance(after);
+}
+
+void PixelStatistics::merge(const PixelStatistics& other) {
+    hitCount += other.hitCount;
+    pathSignature += other.pathSignature;
+    if (other.sampleCount == 0) return;
+    const double total = static_cast<double>(sampleCount + other.sampleCount);
+    const Vec3d delta = other.mean - mean;
+    const double cross = static_cast<double>(sampleCount) * (static_cast<double>(other.sampleCount) / total);
+    squaredDeviation += other.squaredDeviation + delta * delta * cross;
+    luminanceSquaredDeviation += other.luminanceSquaredDeviation + luminance(delta) * luminance(delta) * cross;
+    mean += delta * (static_cast<double>(other.sampleCount) / total);
+    sampleCount += other.sampleCount;
+}
+
+Vec3d PixelStatistics::variance() const {
+    return sampleCount < 2 ? Vec3d(0.0) : squaredDeviation / static_cast<double>(sampleCount - 1);
+}
+
+double PixelStatistics::luminanceVariance() const {
+    return sampleCount < 2 ? 0.0 : luminanceSquaredDeviation / static_cast<double>(sampleCount - 1);
+}
+
+void Diagnostics::merge(const Diagnostics& other) {
+    nonFiniteSamples += other.nonFiniteSamples;
+    negativeSamples += other.negativeSamples;
+    stackOverflows += other.stackOverflows;
+    invalidIndices += other.invalidIndices;
+}
+
+std::uint64_t Film::minSampleCount() const {
+    std::uint64_t least = pixels.empty() ? 0 : pixels.front().sampleCount;
+    for (const PixelStatistics& pixel : pixels) least = std::min(least, pixel.sampleCount);
+    return least;
+}
+
+std::uint64_t Film::maxSampleCount() const {
+    std::uint64_t most = 0;
+    for (const PixelStatistics& pixel : pixels) most = std::max(most, pixel.sampleCount);
+    return most;
+}
+
+} // namespace isolux

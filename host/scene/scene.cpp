@@ -1,0 +1,84 @@
+#include "scene/scene.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+namespace isolux {
+namespace {
+
+Vec3d transformPoint(const Mat4d& matrix, const Vec3f& point) { return Vec3d(matrix * glm::dvec4(Vec3d(point), 1.0)); }
+
+void validateMaterial(const Material& material) {
+    const std::string where = fmt::format("material '{}'", material.name);
+    if (!isFinite(material.baseColor) || !isFinite(material.emission)) throwBadInput(where, "a factor is not finite");
+    const bool albedoInRange = glm::all(glm::greaterThanEqual(material.baseColor, Vec3d(0.0))) &&
+                               glm::all(glm::lessThanEqual(material.baseColor, Vec3d(1.0)));
+    if (!albedoInRange) throwBadInput(where, "base colour must lie in [0, 1]");
+    if (glm::any(glm::lessThan(material.emission, Vec3d(0.0)))) throwBadInput(where, "emission must not be negative");
+}
+
+void validateMesh(const Mesh& mesh, std::size_t materialCount) {
+    const std::string where = fmt::format("mesh '{}'", mesh.name);
+    if (mesh.material >= materialCount) throwBadInput(where, "its material does not exist");
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+        throwBadInput(where, "it has another number of normals than positions");
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        if (!isFinite(mesh.positions[i])) throwBadInput(where, fmt::format("position {} is not finite", i));
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t index : triangle)
+            if (index >= mesh.positions.size()) throwBadInput(where, fmt::format("index {} is out of range", index));
+}
+
+} // namespace
+
+std::size_t primitiveCount(const Scene& scene) {
+    std::size_t count = scene.spheres.size();
+    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
+    return count;
+}
+
+Box3d worldBounds(const Scene& scene) {
+    Box3d bounds;
+    for (const Instance& instance : scene.instances)
+        for (const Vec3f& position : scene.meshes[instance.mesh].positions)
+            bounds.extend(transformPoint(instance.worldFromObject, position));
+    for (const Sphere& sphere : scene.spheres) {
+        bounds.extend(sphere.center - Vec3d(sphere.radius));
+        bounds.extend(sphere.center + Vec3d(sphere.radius));
+    }
+    return bounds;
+}
+
+Camera frameScene(const Scene& scene) {
+    const Box3d bounds = worldBounds(scene);
+    const double radius = bounds.empty() ? 1.0 : std::max(0.5 * glm::length(bounds.extent()), 1e-30);
+    Camera camera;
+    camera.name = "automatic";
+    const Vec3d backward = glm::normalize(Vec3d(0.0, 0.25, 1.0));
+    const Vec3d right(1.0, 0.0, 0.0);
+    camera.worldFromCamera = Mat3d(right, glm::cross(backward, right), backward);
+    const Vec3d center = bounds.empty() ? Vec3d(0.0) : bounds.center();
+    camera.position = center + backward * (radius / std::sin(0.5 * camera.yfov));
+    return camera;
+}
+
+void validate(const Scene& scene) {
+    for (const Material& material : scene.materials) validateMaterial(material);
+    for (const Mesh& mesh : scene.meshes) validateMesh(mesh, scene.materials.size());
+    for (const Instance& instance : scene.instances) {
+        if (instance.mesh >= scene.meshes.size()) throwBadInput(fmt::format("node '{}'", instance.name), "its mesh does not exist");
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                if (!std::isfinite(instance.worldFromObject[column][row]))
+                    throwBadInput(fmt::format("node '{}'", instance.name), "its transform is not finite");
+    }
+    for (const Sphere& sphere : scene.spheres) {
+        const std::string where = fmt::format("sphere '{}'", sphere.name);
+        if (sphere.material >= scene.materials.size()) throwBadInput(where, "its material does not exist");
+        if (!isFinite(sphere.center) || !std::isfinite(sphere.radius) || sphere.radius <= 0.0)
+            throwBadInput(where, "its centre must be finite and its radius positive");
+    }
+}
+
+} // namespace isolux
