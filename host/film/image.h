@@ -3,10 +3,14 @@
 
 #include "film/film.h"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
-#include <span>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -23,24 +27,40 @@ struct Image {
     std::vector<float> values;         ///< width * height * channels.size()
     Metadata metadata;
 
+    [[nodiscard]] std::size_t pixelCount() const { return std::size_t{width} * height; }
     /// Index of a channel by name, or nothing.
     [[nodiscard]] std::optional<std::size_t> channel(std::string_view name) const;
+    /// Indices of the channels R, G and B, or nothing if one is missing.
+    [[nodiscard]] std::optional<std::array<std::size_t, 3>> rgbChannels() const;
     [[nodiscard]] float value(std::size_t pixel, std::size_t channelIndex) const {
         return values[pixel * channels.size() + channelIndex];
     }
 };
 
-/// Root R G B A, variance.R/G/B and variance.Y (of one sample; Y is luminance), samples.Y; metadata isolux/sampleCount.
+/// A count or seed as metadata: an integer, or its decimal digits where 64 bits with a sign cannot hold it.
+[[nodiscard]] MetadataValue unsignedMetadata(std::uint64_t value);
+
+/// The value under `name` as an unsigned integer, given as a number or as decimal digits; nothing if there is none.
+[[nodiscard]] std::optional<std::uint64_t> metadataUnsigned(const Metadata& metadata, const std::string& name);
+
+/// The value under `name` as text, numbers in the shortest form that reads back exactly; nothing if there is none.
+[[nodiscard]] std::optional<std::string> metadataText(const Metadata& metadata, const std::string& name);
+
+/// R G B (mean), A (the share of samples that met a surface), variance.R/G/B and variance.Y (of one sample, unbiased; Y
+/// is luminance), samples.Y. Metadata isolux/sampleCount is set to the most samples any pixel holds.
 [[nodiscard]] Image imageFromFilm(const Film& film, Metadata metadata);
 
 /// Writes OpenEXR (float32, all channels), PNG (8 bit, sRGB transfer function) or HDR by the extension of `path`: to a
 /// temporary name beside it, flushed, then renamed. Throws Error; a file already at `path` survives every failure.
 void writeImage(const std::filesystem::path& path, const Image& image);
 
-/// Throws Error (bad input) early if `path` has no supported extension or its folder does not exist or is not writable.
+/// Throws Error (bad input) early if `path` has no supported extension, names a folder, or its folder does not exist or
+/// cannot be written to.
 void checkImagePath(const std::filesystem::path& path);
 
-/// Reads any image OpenImageIO knows, as float; 8-bit files are decoded from sRGB to linear. Throws Error (bad input).
+/// Reads any image OpenImageIO knows, as float: integer formats are decoded from sRGB to linear, with associated alpha;
+/// others are taken as they are. EXR channels may come in another order than they were written in. Throws Error (bad
+/// input).
 [[nodiscard]] Image readImage(const std::filesystem::path& path);
 
 } // namespace isolux

@@ -11,15 +11,20 @@ function(isolux_kernels target)
     set(raw ${out}/${name}.raw.spv)
     set(spirv ${out}/${name}.spv)
     add_custom_command(
-      OUTPUT ${spirv}
+      OUTPUT ${raw} # the output that the file of dependencies names
       COMMAND ${CMAKE_COMMAND} -E make_directory ${out}
       COMMAND ${GLSLANG_VALIDATOR} --quiet --target-env vulkan1.2 -I${CMAKE_CURRENT_SOURCE_DIR} --depfile ${out}/${name}.d
               -o ${raw} ${source}
-      COMMAND ${SPIRV_OPT} -O --target-env=vulkan1.2 ${raw} -o ${spirv}
-      COMMAND ${SPIRV_VAL} --target-env vulkan1.2 ${spirv}
       DEPENDS ${source}
       DEPFILE ${out}/${name}.d
       COMMENT "SPIR-V ${name}"
+      VERBATIM)
+    add_custom_command(
+      OUTPUT ${spirv}
+      COMMAND ${SPIRV_OPT} -O --target-env=vulkan1.2 ${raw} -o ${spirv}
+      COMMAND ${SPIRV_VAL} --target-env vulkan1.2 ${spirv}
+      DEPENDS ${raw}
+      COMMENT "SPIR-V ${name}, optimised"
       VERBATIM)
     add_custom_command(
       OUTPUT ${out}/${name}.cpp

@@ -1,0 +1,318 @@
+#include "film/image.h"
+
+#include "core/error.h"
+#include "core/platform.h"
+#include "film/srgb.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <utility>
+
+namespace isolux {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The limits of what is read: a header that asks for more is refused before memory is taken.
+constexpr int kMaxChannels = 256;
+constexpr int kMaxImageMegabytes = 8192;
+
+enum class Format { openExr, png, hdr };
+
+std::optional<Format> formatOf(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".exr") return Format::openExr;
+    if (extension == ".png") return Format::png;
+    if (extension == ".hdr") return Format::hdr;
+    return std::nullopt;
+}
+
+Format requireFormat(const fs::path& path) {
+    const std::optional<Format> format = formatOf(path);
+    if (!format) throwBadInput(path.string(), "not an image format that can be written: use .exr, .png or .hdr");
+    return *format;
+}
+
+const char* pluginName(Format format) {
+    switch (format) {
+    case Format::openExr: return "openexr";
+    case Format::png: return "png";
+    case Format::hdr: return "hdr";
+    }
+    return "";
+}
+
+/// What OpenImageIO is asked to write: its own description, and the pixels as they go into the file.
+struct FileContent {
+    OIIO::ImageSpec spec;
+    std::vector<float> floats;
+    std::vector<std::uint8_t> bytes; ///< used instead of `floats` by 8-bit files
+};
+
+OIIO::ImageSpec makeSpec(const Image& image, const std::vector<std::string>& channels, OIIO::TypeDesc type) {
+    OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height),
+                         static_cast<int>(channels.size()), type);
+    spec.channelnames = channels;
+    const auto alpha = std::find(channels.begin(), channels.end(), "A");
+    spec.alpha_channel = alpha == channels.end() ? -1 : static_cast<int>(alpha - channels.begin());
+    return spec;
+}
+
+// --- OpenEXR ---
+
+/// EXR has 32-bit integers only: OpenImageIO drops longer ones in silence, so they go in as decimal digits.
+void setAttribute(OIIO::ImageSpec& spec, const std::string& name, std::int64_t value) {
+    if (std::in_range<int>(value)) spec.attribute(name, static_cast<int>(value));
+    else spec.attribute(name, std::to_string(value));
+}
+void setAttribute(OIIO::ImageSpec& spec, const std::string& name, const std::string& value) { spec.attribute(name, value); }
+void setAttribute(OIIO::ImageSpec& spec, const std::string& name, double value) {
+    spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), &value);
+}
+
+FileContent exrContent(const Image& image) {
+    FileContent content{makeSpec(image, image.channels, OIIO::TypeDesc::FLOAT), image.values, {}};
+    for (const auto& [name, value] : image.metadata) {
+        std::visit([&](const auto& typed) { setAttribute(content.spec, name, typed); }, value);
+    }
+    content.spec.attribute("compression", "zip");
+    content.spec.attribute("oiio:ColorSpace", "Linear");
+    return content;
+}
+
+// --- PNG ---
+
+std::array<std::size_t, 3> requireRgb(const Image& image, const fs::path& path) {
+    const auto rgb = image.rgbChannels();
+    if (!rgb) throwFailure(path.string(), "the image has no channels R, G and B to write");
+    return *rgb;
+}
+
+/// The alpha channel if a viewer should see it: not where it is 1 all over, and not where light comes from behind
+/// everything (radiance without coverage), which a transparent pixel would hide.
+std::optional<std::size_t> visibleAlpha(const Image& image, const std::array<std::size_t, 3>& rgb) {
+    const auto alpha = image.channel("A");
+    if (!alpha) return std::nullopt;
+    bool opaque = true;
+    for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
+        const float coverage = image.value(pixel, *alpha);
+        opaque = opaque && coverage == 1.0f;
+        const bool lit = std::any_of(rgb.begin(), rgb.end(), [&](std::size_t c) { return image.value(pixel, c) != 0.0f; });
+        if (coverage == 0.0f && lit) return std::nullopt;
+    }
+    return opaque ? std::nullopt : alpha;
+}
+
+/// Eight bits of a value; NaN becomes 0, as the negated comparison is true for it.
+std::uint8_t quantise(double value) {
+    if (!(value > 0.0)) return 0;
+    return static_cast<std::uint8_t>(std::lround(255.0 * std::min(value, 1.0)));
+}
+std::uint8_t encodeSrgb(double linear) { return quantise(linear > 0.0 ? srgbFromLinear(std::min(linear, 1.0)) : 0.0); }
+
+/// PNG stores colour not multiplied by alpha. The division is done on linear values, before anything is rounded.
+FileContent pngContent(const Image& image, const fs::path& path) {
+    const std::array<std::size_t, 3> rgb = requireRgb(image, path);
+    const std::optional<std::size_t> alpha = visibleAlpha(image, rgb);
+    std::vector<std::string> channels{"R", "G", "B"};
+    if (alpha) channels.emplace_back("A");
+    FileContent content{makeSpec(image, channels, OIIO::TypeDesc::UINT8), {}, {}};
+    for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
+        const double coverage = alpha ? double{image.value(pixel, *alpha)} : 1.0;
+        const double scale = coverage > 0.0 ? 1.0 / coverage : 1.0;
+        for (std::size_t c : rgb) content.bytes.push_back(encodeSrgb(scale * double{image.value(pixel, c)}));
+        if (alpha) content.bytes.push_back(quantise(coverage));
+    }
+    for (const auto& [name, value] : image.metadata) content.spec.attribute(name, *metadataText(image.metadata, name));
+    content.spec.attribute("oiio:ColorSpace", "sRGB");
+    content.spec.attribute("oiio:UnassociatedAlpha", 1);
+    return content;
+}
+
+// --- HDR ---
+
+/// What RGBE can hold, with half a step of the shared exponent added: OpenImageIO's encoder truncates, which would make
+/// every image darker by 0.2 %.
+Vec3f prepareForRgbe(const Vec3f& radiance) {
+    constexpr float kLargest = 1.6e38f; // below 2^127
+    Vec3f rgb(0.0f);
+    for (int c = 0; c < 3; ++c) rgb[c] = radiance[c] > 0.0f ? std::min(radiance[c], kLargest) : 0.0f;
+    int exponent = 0;
+    std::frexp(maxComponent(rgb), &exponent);
+    return rgb + Vec3f(maxComponent(rgb) > 0.0f ? std::ldexp(0.5f, exponent - 8) : 0.0f);
+}
+
+FileContent hdrContent(const Image& image, const fs::path& path) {
+    const std::array<std::size_t, 3> rgb = requireRgb(image, path);
+    FileContent content{makeSpec(image, {"R", "G", "B"}, OIIO::TypeDesc::FLOAT), {}, {}};
+    for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
+        const Vec3f value = prepareForRgbe({image.value(pixel, rgb[0]), image.value(pixel, rgb[1]), image.value(pixel, rgb[2])});
+        content.floats.insert(content.floats.end(), {value.x, value.y, value.z});
+    }
+    return content;
+}
+
+// --- Writing ---
+
+FileContent makeContent(Format format, const Image& image, const fs::path& path) {
+    switch (format) {
+    case Format::openExr: return exrContent(image);
+    case Format::png: return pngContent(image, path);
+    case Format::hdr: return hdrContent(image, path);
+    }
+    return {};
+}
+
+/// The bytes of the file. Encoding into memory leaves the writing, and so every failing write, to this file's own code.
+std::vector<unsigned char> encode(Format format, const FileContent& content, const fs::path& path) {
+    const auto fail = [&](const std::string& message) { throwFailure(path.string(), "cannot encode the image: " + message); };
+    std::vector<unsigned char> encoded;
+    OIIO::Filesystem::IOVecOutput memory(encoded);
+    const auto output = OIIO::ImageOutput::create(pluginName(format));
+    if (!output) fail(OIIO::geterror());
+    if (!output->set_ioproxy(&memory) || !output->open(path.string(), content.spec)) fail(output->geterror());
+    const bool written = content.bytes.empty() ? output->write_image(OIIO::TypeDesc::FLOAT, content.floats.data())
+                                               : output->write_image(OIIO::TypeDesc::UINT8, content.bytes.data());
+    if (!written) fail(output->geterror());
+    if (!output->close()) fail(output->geterror());
+    return encoded;
+}
+
+fs::path folderOf(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+/// A file beside `target` that is gone when this object is, unless it has been renamed by then.
+class TemporaryFile {
+public:
+    explicit TemporaryFile(const fs::path& target)
+        : path_(folderOf(target) / ("." + target.stem().string() + "." + std::to_string(processId()) + ".tmp" +
+                                    target.extension().string())) {}
+    ~TemporaryFile() {
+        std::error_code ignored;
+        fs::remove(path_, ignored);
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    [[nodiscard]] const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+/// Writes the bytes to a new file. The stream is closed before it is asked: the last bytes may fail as late as that.
+void writeBytes(const fs::path& file, std::span<const unsigned char> bytes, const fs::path& target) {
+    errno = 0;
+    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) throwFailure(target.string(), std::string("cannot write the image: ") + std::strerror(errno));
+}
+
+// --- Reading ---
+
+void requireRegularFile(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) throwBadInput(path.string(), "no such file");
+    if (error) throwBadInput(path.string(), error.message());
+    if (fs::is_directory(status)) throwBadInput(path.string(), "is a folder, not an image");
+    if (!fs::is_regular_file(status)) throwBadInput(path.string(), "is not a regular file");
+}
+
+/// Whether the description is one this program can hold; OpenImageIO's own limits are checked by some formats only.
+void requireReasonable(const OIIO::ImageSpec& spec, const fs::path& path) {
+    const double megabytes = 4e-6 * spec.width * spec.height * spec.nchannels;
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1) throwBadInput(path.string(), "not a two-dimensional image");
+    if (spec.nchannels > kMaxChannels) throwBadInput(path.string(), "more channels than the limit of 256");
+    if (megabytes > kMaxImageMegabytes) throwBadInput(path.string(), "larger than the limit of 8 GB of pixels");
+    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height) {
+        throwBadInput(path.string(), "its data window differs from its display window: crop or pad it first");
+    }
+}
+
+Metadata readMetadata(const OIIO::ImageSpec& spec) {
+    Metadata metadata;
+    for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+        const std::string name = attribute.name().string();
+        const OIIO::TypeDesc type = attribute.type();
+        if (type.arraylen != 0 || type.aggregate != OIIO::TypeDesc::SCALAR) continue;
+        if (name.starts_with("oiio:") || name == "compression") continue; // of this file, not of the image
+        if (type.basetype == OIIO::TypeDesc::STRING) metadata[name] = attribute.get_string();
+        else if (type.is_floating_point()) metadata[name] = type.basetype == OIIO::TypeDesc::DOUBLE ? *static_cast<const double*>(attribute.data()) : double{attribute.get_float()};
+        else metadata[name] = std::int64_t{attribute.get_int()};
+    }
+    return metadata;
+}
+
+bool isAuxiliary(const std::string& channelName) { return channelName == "A" || channelName == "Z"; }
+
+/// Integer files: every colour channel from sRGB to linear, then multiplied by alpha if the file stores it apart.
+void linearise(Image& image, const OIIO::ImageSpec& spec) {
+    const auto alpha = image.channel("A");
+    const bool associate = alpha && spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
+    const std::size_t channelCount = image.channels.size();
+    for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
+        float* const values = image.values.data() + pixel * channelCount;
+        const double scale = associate ? double{values[*alpha]} : 1.0;
+        for (std::size_t c = 0; c < channelCount; ++c) {
+            if (!isAuxiliary(image.channels[c])) values[c] = static_cast<float>(scale * linearFromSrgb(double{values[c]}));
+        }
+    }
+}
+
+std::unique_ptr<OIIO::ImageInput> openImage(const fs::path& path) {
+    requireRegularFile(path);
+    OIIO::attribute("limits:channels", kMaxChannels);
+    OIIO::attribute("limits:imagesize_MB", kMaxImageMegabytes);
+    OIIO::ImageSpec request;
+    request.attribute("oiio:UnassociatedAlpha", 1); // colour as stored: OpenImageIO would multiply the encoded bytes
+    auto input = OIIO::ImageInput::open(path.string(), &request);
+    if (!input) throwBadInput(path.string(), "not an image that can be read: " + OIIO::geterror());
+    return input;
+}
+
+} // namespace
+
+void writeImage(const fs::path& path, const Image& image) {
+    assert(image.values.size() == image.pixelCount() * image.channels.size());
+    const Format format = requireFormat(path);
+    const std::vector<unsigned char> bytes = encode(format, makeContent(format, image, path), path);
+    const TemporaryFile temporary(path);
+    writeBytes(temporary.path(), bytes, path);
+    replaceFile(temporary.path(), path);
+}
+
+void checkImagePath(const fs::path& path) {
+    requireFormat(path);
+    std::error_code error;
+    const fs::path folder = folderOf(path);
+    if (!fs::is_directory(folder, error)) throwBadInput(path.string(), "its folder does not exist");
+    if (fs::is_directory(path, error)) throwBadInput(path.string(), "is a folder");
+    const TemporaryFile probe(path); // permissions alone would not tell of a read-only file system
+    if (!std::ofstream(probe.path())) throwBadInput(path.string(), "its folder cannot be written to");
+}
+
+Image readImage(const fs::path& path) {
+    const auto input = openImage(path);
+    const OIIO::ImageSpec& spec = input->spec();
+    requireReasonable(spec, path);
+    Image image{static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height), spec.channelnames, {}, readMetadata(spec)};
+    image.values.resize(image.pixelCount() * image.channels.size());
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data())) {
+        throwBadInput(path.string(), "damaged or truncated: " + input->geterror());
+    }
+    if (!spec.format.is_floating_point()) linearise(image, spec);
+    return image;
+}
+
+} // namespace isolux

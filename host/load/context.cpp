@@ -1,0 +1,44 @@
+#include "load/context.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+namespace isolux {
+
+std::string printable(std::string_view text) {
+    constexpr std::size_t kLongest = 120;
+    std::string result(text.substr(0, kLongest));
+    for (char& c : result)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+    // A cut inside a UTF-8 sequence would leave invalid text.
+    if (text.size() > kLongest) {
+        while (!result.empty() && (static_cast<unsigned char>(result.back()) & 0xC0u) == 0x80u) result.pop_back();
+        if (!result.empty() && (static_cast<unsigned char>(result.back()) & 0x80u) != 0) result.pop_back();
+        result += "...";
+    }
+    return result;
+}
+
+void LoadContext::fail(std::string_view pointer, std::string_view message) const {
+    throwBadInput(pointer.empty() ? file_ : fmt::format("{}: {}", file_, printable(pointer)), message);
+}
+
+void LoadContext::warn(std::string_view pointer, std::string_view message) {
+    const auto [entry, isNew] = warningOf_.try_emplace(std::string(message), warnings_.size());
+    if (isNew) warnings_.push_back({printable(pointer), std::string(message), 0});
+    ++warnings_[entry->second].count;
+}
+
+std::vector<std::string> LoadContext::warnings() const {
+    std::vector<std::string> lines;
+    for (const Warning& warning : warnings_) {
+        std::string line = warning.pointer.empty() ? warning.message
+                                                   : fmt::format("{}: {}", warning.pointer, warning.message);
+        if (warning.count > 1) line += fmt::format(" (and {} more)", warning.count - 1);
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+} // namespace isolux

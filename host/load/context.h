@@ -1,0 +1,39 @@
+// Where a load reports to: errors with file and JSON pointer, and warnings summarised so that a file yields few lines.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isolux {
+
+/// Text from a file made fit for a message: control characters are replaced and long text is cut.
+[[nodiscard]] std::string printable(std::string_view text);
+
+class LoadContext {
+public:
+    explicit LoadContext(std::string file) : file_(std::move(file)) {}
+
+    /// Throws a bad-input Error at a JSON pointer; an empty pointer means the file as a whole.
+    [[noreturn]] void fail(std::string_view pointer, std::string_view message) const;
+
+    /// Notes what is not supported. Equal messages are counted, not repeated.
+    void warn(std::string_view pointer, std::string_view message);
+
+    /// "pointer: message (and 3 more)", one per message, in order of first appearance.
+    [[nodiscard]] std::vector<std::string> warnings() const;
+
+private:
+    struct Warning {
+        std::string pointer;
+        std::string message;
+        std::size_t count = 0;
+    };
+    std::string file_;
+    std::vector<Warning> warnings_;
+    std::map<std::string, std::size_t, std::less<>> warningOf_;
+};
+
+} // namespace isolux

@@ -1,0 +1,14 @@
+// Loads a glTF 2.0 file (.gltf or .glb) as a Scene.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <filesystem>
+
+namespace isolux {
+
+/// The file's default scene. Throws Error (bad input) naming the file and the JSON pointer of what is wrong; what is
+/// merely not supported is left out and named in Scene::warnings.
+[[nodiscard]] Scene loadScene(const std::filesystem::path& file);
+
+} // namespace isolux

@@ -1,0 +1,89 @@
+#include "load/verify.h"
+
+#include "load/context.h"
+#include "load/verify_parts.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace isolux {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<std::string_view, 2> kSupportedExtensions = {"KHR_materials_emissive_strength",
+                                                                  "KHR_materials_specular"};
+
+bool isSupported(std::string_view extension) {
+    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
+}
+
+/// The part of "2.1" before and after the dot; fails unless both are numbers.
+std::pair<int, int> parseVersion(const JsonReader& version) {
+    const std::string text = version.string();
+    const bool isValid = text.size() >= 3 && text.size() <= 8 && text.find('.') != std::string::npos &&
+                         text.find_first_not_of("0123456789.") == std::string::npos && text.front() != '.' &&
+                         text.back() != '.' && text.find('.') == text.rfind('.');
+    if (!isValid) version.fail(fmt::format("'{}' is not a version such as 2.0", printable(text)));
+    const std::size_t dot = text.find('.');
+    return {std::stoi(text.substr(0, dot)), std::stoi(text.substr(dot + 1))};
+}
+
+using VerifyPart = json (*)(const JsonReader& part, const JsonReader& root);
+
+json verifyAll(const JsonReader& root, std::string_view key, VerifyPart verify) {
+    json result = json::array();
+    const std::size_t count = root.sizeOf(key);
+    for (std::size_t i = 0; i < count; ++i) result.push_back(verify(root.at(key).element(i), root));
+    return result;
+}
+
+} // namespace
+
+void verifyAsset(const JsonReader& root) {
+    const JsonReader version = root.at("asset").at("version");
+    if (parseVersion(version).first != 2)
+        version.fail(fmt::format("glTF {} is not supported; export as glTF 2.0", printable(version.string())));
+    const std::optional<JsonReader> minVersion = root.at("asset").find("minVersion");
+    if (minVersion && parseVersion(*minVersion) > std::pair(2, 0))
+        minVersion->fail(fmt::format("a reader of glTF {} is needed; this one reads 2.0", printable(minVersion->string())));
+}
+
+void verifyExtensions(const JsonReader& root) {
+    for (std::size_t i = 0; i < root.sizeOf("extensionsRequired"); ++i) {
+        const JsonReader entry = root.at("extensionsRequired").element(i);
+        if (const std::string name = entry.string(); !isSupported(name))
+            entry.fail(fmt::format("the file requires {}, which is not supported; export without it", printable(name)));
+    }
+    for (std::size_t i = 0; i < root.sizeOf("extensionsUsed"); ++i) {
+        const JsonReader entry = root.at("extensionsUsed").element(i);
+        if (const std::string name = entry.string(); !isSupported(name))
+            entry.warn(fmt::format("{} is not supported; ignored", printable(name)));
+    }
+}
+
+void copyName(const JsonReader& from, json& to) {
+    if (const std::optional<JsonReader> name = from.find("name")) to["name"] = name->string();
+}
+
+json verifyDocument(const JsonReader& root) {
+    verifyAsset(root);
+    verifyExtensions(root);
+    json document;
+    document["asset"] = {{"version", "2.0"}};
+    document["bufferViews"] = verifyAll(root, "bufferViews", verifyBufferView);
+    document["accessors"] = verifyAll(root, "accessors", verifyAccessor);
+    document["materials"] = verifyAll(root, "materials", verifyMaterial);
+    document["meshes"] = verifyAll(root, "meshes", verifyMesh);
+    document["cameras"] = verifyAll(root, "cameras", verifyCamera);
+    document["nodes"] = verifyAll(root, "nodes", verifyNode);
+    document["scenes"] = verifyAll(root, "scenes", verifyScene);
+    if (const std::optional<JsonReader> scene = root.find("scene"))
+        document["scene"] = scene->index(root.sizeOf("scenes"), "scenes");
+    verifyHierarchy(root);
+    verifyReferences(root);
+    return document;
+}
+
+} // namespace isolux

@@ -1,0 +1,13 @@
+// Checks an untrusted glTF document and rewrites what is supported as a clean one: known members, known types, indices and
+// ranges that hold. tinygltf and everything after it sees the clean document only.
+#pragma once
+
+#include "load/json_reader.h"
+
+namespace isolux {
+
+/// The clean document: asset, scenes, nodes, meshes, materials, cameras, accessors and bufferViews. Warns of what it
+/// leaves out; throws Error at the pointer of what is wrong.
+[[nodiscard]] nlohmann::json verifyDocument(const JsonReader& root);
+
+} // namespace isolux

@@ -1,0 +1,74 @@
+// References among parts of the document that are not supported yet: wrong ones are errors all the same.
+#include "load/verify_parts.h"
+
+#include <array>
+
+namespace isolux {
+namespace {
+
+/// `owner`'s member `key`, if present, is an index into the document's array `target`.
+void verifyReference(const JsonReader& owner, std::string_view key, const JsonReader& root, std::string_view target) {
+    if (const std::optional<JsonReader> reference = owner.find(key)) (void)reference->index(root.sizeOf(target), target);
+}
+
+void verifyTextureSources(const JsonReader& root) {
+    for (std::size_t i = 0; i < root.sizeOf("textures"); ++i) {
+        const JsonReader texture = root.at("textures").element(i);
+        verifyReference(texture, "source", root, "images");
+        verifyReference(texture, "sampler", root, "samplers");
+    }
+    for (std::size_t i = 0; i < root.sizeOf("images"); ++i)
+        verifyReference(root.at("images").element(i), "bufferView", root, "bufferViews");
+}
+
+void verifySkins(const JsonReader& root) {
+    for (std::size_t i = 0; i < root.sizeOf("skins"); ++i) {
+        const JsonReader skin = root.at("skins").element(i);
+        verifyReference(skin, "inverseBindMatrices", root, "accessors");
+        verifyReference(skin, "skeleton", root, "nodes");
+        const JsonReader joints = skin.at("joints");
+        for (std::size_t j = 0; j < joints.size(); ++j) (void)joints.element(j).index(root.sizeOf("nodes"), "nodes");
+    }
+}
+
+void verifyAnimation(const JsonReader& animation, const JsonReader& root) {
+    for (std::size_t i = 0; i < animation.sizeOf("channels"); ++i) {
+        const JsonReader channel = animation.at("channels").element(i);
+        (void)channel.at("sampler").index(animation.sizeOf("samplers"), "samplers of the animation:");
+        verifyReference(channel.at("target"), "node", root, "nodes");
+    }
+    for (std::size_t i = 0; i < animation.sizeOf("samplers"); ++i) {
+        verifyReference(animation.at("samplers").element(i), "input", root, "accessors");
+        verifyReference(animation.at("samplers").element(i), "output", root, "accessors");
+    }
+}
+
+void verifyAnimations(const JsonReader& root) {
+    const std::size_t count = root.sizeOf("animations");
+    for (std::size_t i = 0; i < count; ++i) verifyAnimation(root.at("animations").element(i), root);
+    if (count > 0) root.at("animations").warn("animations are not supported; the scene is rendered at rest");
+}
+
+std::optional<JsonReader> findLights(const JsonReader& owner) {
+    const std::optional<JsonReader> extensions = owner.find("extensions");
+    return extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
+}
+
+void verifyLights(const JsonReader& root) {
+    const std::optional<JsonReader> lights = findLights(root);
+    const std::size_t lightCount = lights ? lights->sizeOf("lights") : 0;
+    for (std::size_t i = 0; i < root.sizeOf("nodes"); ++i)
+        if (const std::optional<JsonReader> light = findLights(root.at("nodes").element(i)))
+            (void)light->at("light").index(lightCount, "KHR_lights_punctual lights");
+}
+
+} // namespace
+
+void verifyReferences(const JsonReader& root) {
+    verifyTextureSources(root);
+    verifySkins(root);
+    verifyAnimations(root);
+    verifyLights(root);
+}
+
+} // namespace isolux

@@ -1,0 +1,92 @@
+// Instances to world-space triangles: positions, geometric and shading normals, boxes.
+#include "reference/world.h"
+
+#include <cmath>
+
+namespace isolux {
+namespace {
+
+/// A float box that holds the double one however the numbers in it were rounded.
+Box3f roundOutward(const Box3d& box) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Box3f rounded;
+    for (int axis = 0; axis < 3; ++axis) {
+        rounded.lower[axis] = std::nextafter(static_cast<float>(box.lower[axis]), -kInfinity);
+        rounded.upper[axis] = std::nextafter(static_cast<float>(box.upper[axis]), kInfinity);
+    }
+    return rounded;
+}
+
+/// The inverse transpose up to a factor, as the matrix of cofactors: it exists for singular matrices too. Scaled to
+/// entries near 1, since tiny or huge instances would leave the range of float.
+Mat3d normalMatrix(const Mat3d& m) {
+    const Mat3d cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    double largest = 0.0;
+    for (int column = 0; column < 3; ++column) largest = std::max(largest, maxComponent(glm::abs(cofactors[column])));
+    return largest > 0.0 ? cofactors / largest : Mat3d(0.0);
+}
+
+/// One mesh as one instance places it.
+struct Placement {
+    const Mesh& mesh;
+    Mat4d worldFromObject;
+    Mat3d normalFromObject;
+    double frontSign; ///< -1 if the transform mirrors: the front is then the side seen clockwise (glTF 2.0, 3.7.4)
+
+    Placement(const Scene& scene, const Instance& instance)
+        : mesh(scene.meshes[instance.mesh]), worldFromObject(instance.worldFromObject),
+          normalFromObject(normalMatrix(Mat3d(instance.worldFromObject))),
+          frontSign(glm::determinant(Mat3d(instance.worldFromObject)) < 0.0 ? -1.0 : 1.0) {}
+
+    [[nodiscard]] Vec3d position(std::uint32_t vertex) const {
+        return Vec3d(worldFromObject * glm::dvec4(Vec3d(mesh.positions[vertex]), 1.0));
+    }
+    [[nodiscard]] Vec3d normal(std::uint32_t vertex) const {
+        return mesh.normals.empty() ? Vec3d(0.0) : normalFromObject * Vec3d(mesh.normals[vertex]);
+    }
+};
+
+template <typename Real>
+void addTriangle(World<Real>& world, const Placement& placement, const std::array<std::uint32_t, 3>& vertices) {
+    WorldTriangle<Real> triangle;
+    triangle.material = placement.mesh.material;
+    std::array<Vec3d, 3> positions;
+    Box3d bounds;
+    for (std::size_t i = 0; i < 3; ++i) {
+        positions[i] = placement.position(vertices[i]);
+        bounds.extend(positions[i]);
+        triangle.positions[i] = Vec3<Real>(positions[i]);
+        triangle.normals[i] = Vec3<Real>(placement.normal(vertices[i]));
+    }
+    const Vec3d cross = glm::cross(positions[1] - positions[0], positions[2] - positions[0]);
+    const double length = glm::length(cross);
+    if (length > 0.0 && std::isfinite(length)) {
+        triangle.ng = Vec3<Real>(cross * (placement.frontSign / length));
+        triangle.area = static_cast<Real>(length / 2);
+    }
+    world.triangles.push_back(triangle);
+    world.boxes.push_back(roundOutward(bounds));
+}
+
+template <typename Real> void addSphere(World<Real>& world, const Sphere& sphere) {
+    const Vec3d radius(sphere.radius);
+    world.spheres.push_back({Vec3<Real>(sphere.center), static_cast<Real>(sphere.radius), sphere.material});
+    world.boxes.push_back(roundOutward({sphere.center - radius, sphere.center + radius}));
+}
+
+} // namespace
+
+template <typename Real> World<Real> flatten(const Scene& scene) {
+    World<Real> world;
+    for (const Instance& instance : scene.instances) {
+        const Placement placement(scene, instance);
+        for (const auto& triangle : placement.mesh.triangles) addTriangle(world, placement, triangle);
+    }
+    for (const Sphere& sphere : scene.spheres) addSphere(world, sphere);
+    return world;
+}
+
+template World<float> flatten(const Scene& scene);
+template World<double> flatten(const Scene& scene);
+
+} // namespace isolux

@@ -1,0 +1,80 @@
+// From a hit to all that shading needs to know about the surface there.
+#ifndef ISOLUX_GEOMETRY_SURFACE_GLSL
+#define ISOLUX_GEOMETRY_SURFACE_GLSL
+
+#include "core/scene_access.glsl"
+#include "geometry/ray.glsl"
+#include "geometry/triangle.glsl"
+
+layout(constant_id = 5) const bool kSmoothNormals = true;
+
+struct Surface {
+    vec3 position;
+    vec3 error;  // bound on the position's error per component
+    vec3 facing; // unit geometric normal on the side the ray came from
+    vec3 shading; // unit shading normal, on the same side
+    float area;  // of a triangle; 0 for a sphere
+    bool front;  // the ray came from the front side
+    uint material;
+    uint light; // or kNone
+    uint id;
+    bool flat_; // a triangle: a ray that leaves it cannot meet it again
+};
+
+// Point, error bound and normals of a triangle hit. Barycentric coordinates are found anew for the one triangle.
+void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransform transform, inout Surface surface) {
+    vec3 p0 = primitive.p0Material.xyz;
+    vec3 p1 = primitive.p1Light.xyz;
+    vec3 p2 = primitive.p2Id.xyz;
+    TriangleHit hit = intersectTriangle(p0, p1, p2, ray.origin, transform);
+    float b2 = 1.0 - hit.b0 - hit.b1;
+    surface.position = hit.b0 * p0 + hit.b1 * p1 + b2 * p2;
+    surface.error = errorBound(7.0) * (abs(hit.b0 * p0) + abs(hit.b1 * p1) + abs(b2 * p2)); // pbrt 6.8.4
+    vec3 scaledNormal = cross(p1 - p0, p2 - p0);
+    float doubleArea = length(scaledNormal);
+    surface.area = 0.5 * doubleArea;
+    vec3 normal = scaledNormal / doubleArea;
+    surface.front = dot(ray.direction, normal) <= 0.0;
+    surface.facing = surface.front ? normal : -normal;
+    surface.shading = surface.facing;
+    if (kSmoothNormals) {
+        NormalRecord normals = readNormals(index);
+        vec3 smoothNormal = hit.b0 * normals.n0.xyz + hit.b1 * normals.n1.xyz + b2 * normals.n2.xyz;
+        float size = length(smoothNormal);
+        if (size > 0.0) {
+            smoothNormal /= size;
+            surface.shading = dot(smoothNormal, surface.facing) < 0.0 ? -smoothNormal : smoothNormal;
+        }
+    }
+}
+
+void sphereSurface(PrimitiveRecord primitive, Ray ray, float distance, inout Surface surface) {
+    vec3 center = primitive.p0Material.xyz;
+    float radius = primitive.p1Light.x;
+    // The point along the ray carries the ray's error; put back on the sphere it carries the sphere's (pbrt 6.8.4).
+    vec3 normal = normalize(ray.origin + distance * ray.direction - center);
+    surface.position = center + radius * normal;
+    surface.error = errorBound(6.0) * (abs(radius * normal) + abs(center));
+    surface.area = 0.0;
+    surface.front = dot(ray.direction, normal) <= 0.0;
+    surface.facing = surface.front ? normal : -normal;
+    surface.shading = surface.facing;
+}
+
+Surface surfaceAt(uint index, Ray ray, RayTransform transform, float distance, bool spheres) {
+    PrimitiveRecord primitive = readPrimitive(index);
+    Surface surface;
+    surface.material = floatBitsToUint(primitive.p0Material.w);
+    surface.light = floatBitsToUint(primitive.p1Light.w);
+    uint id = floatBitsToUint(primitive.p2Id.w);
+    surface.id = id & ~kSphereBit;
+    surface.flat_ = !(spheres && (id & kSphereBit) != 0u);
+    if (surface.flat_) {
+        triangleSurface(primitive, index, ray, transform, surface);
+    } else {
+        sphereSurface(primitive, ray, distance, surface);
+    }
+    return surface;
+}
+
+#endif

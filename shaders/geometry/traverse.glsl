@@ -1,0 +1,141 @@
+// Walks the quantised four-wide BVH, nearest child first, for a bounded number of steps at a time.
+#ifndef ISOLUX_GEOMETRY_TRAVERSE_GLSL
+#define ISOLUX_GEOMETRY_TRAVERSE_GLSL
+
+#include "core/scene_access.glsl"
+#include "geometry/ray.glsl"
+#include "geometry/sphere.glsl"
+#include "geometry/triangle.glsl"
+
+layout(constant_id = 2) const uint kStackSize = 64u; // at least WideBvh::stackBound
+layout(constant_id = 3) const bool kSpheres = true;
+
+uint stackItems[kStackSize];    // WideChild bits
+float stackEntries[kStackSize]; // distance at which the ray enters the item's box
+
+struct Traversal {
+    float distance;  // nearest hit so far, or the limit
+    uint primitive;  // its primitive, or kNone
+    uint stackCount; // entries waiting; 0: finished
+};
+
+// What a ray looks for. For kAnyHit the first hit will do.
+const uint kNearestHit = 0u;
+const uint kAnyHit = 1u;
+
+struct Query {
+    Ray ray;
+    uint kind;
+    uint ignored;     // the flat primitive the ray leaves: it cannot be hit again, whatever rounding says
+    uint alsoIgnored; // the flat light a shadow ray ends at
+};
+
+Traversal beginTraversal(float limit, uint nodeCount) {
+    stackItems[0] = 0u;
+    stackEntries[0] = 0.0;
+    return Traversal(limit, kNone, nodeCount == 0u ? 0u : 1u);
+}
+
+vec4 bytesOf(uint word) { return vec4(uvec4(word, word >> 8, word >> 16, word >> 24) & 0xFFu); }
+
+float scaleOf(uint exponents, uint shift) { return uintBitsToFloat(((exponents >> shift) & 0xFFu) << 23); }
+
+void sortPair(inout float ta, inout uint a, inout float tb, inout uint b) {
+    if (ta < tb) {
+        float t = ta;
+        ta = tb;
+        tb = t;
+        uint item = a;
+        a = b;
+        b = item;
+    }
+}
+
+void pushChild(float entry, uint child, inout uint count, inout uint overflows) {
+    if (entry == kFarthest) return;
+    if (count >= kStackSize) {
+        ++overflows;
+        return;
+    }
+    stackItems[count] = child;
+    stackEntries[count] = entry;
+    ++count;
+}
+
+// Entry distances of a node's four boxes; kFarthest for those missed, empty, or beyond `limit`. Planes are taken
+// relative to the origin before they are scaled, so the relative error stays at 3.5 ulp a side (half for the
+// subtraction, 2.5 for the division the API allows, half for the product) and 2^-19 covers both (Ize 2013).
+vec4 childEntries(uvec4 words0, uvec4 lower, uvec4 upper, uvec4 children, vec3 origin, vec3 inverse, float limit) {
+    vec3 base = uintBitsToFloat(words0.xyz);
+    precise vec4 lowerX = base.x + bytesOf(lower.x) * scaleOf(words0.w, 0u);
+    precise vec4 lowerY = base.y + bytesOf(lower.y) * scaleOf(words0.w, 8u);
+    precise vec4 lowerZ = base.z + bytesOf(lower.z) * scaleOf(words0.w, 16u);
+    precise vec4 upperX = base.x + bytesOf(lower.w) * scaleOf(words0.w, 0u);
+    precise vec4 upperY = base.y + bytesOf(upper.x) * scaleOf(words0.w, 8u);
+    precise vec4 upperZ = base.z + bytesOf(upper.y) * scaleOf(words0.w, 16u);
+    precise vec4 x0 = (lowerX - origin.x) * inverse.x;
+    precise vec4 x1 = (upperX - origin.x) * inverse.x;
+    precise vec4 y0 = (lowerY - origin.y) * inverse.y;
+    precise vec4 y1 = (upperY - origin.y) * inverse.y;
+    precise vec4 z0 = (lowerZ - origin.z) * inverse.z;
+    precise vec4 z1 = (upperZ - origin.z) * inverse.z;
+    vec4 entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), vec4(0.0)));
+    vec4 exit = min(min(max(x0, x1), max(y0, y1)), max(z0, z1)) * 1.0000019;
+    bvec4 hit = bvec4(uvec4(lessThanEqual(entry, exit)) & uvec4(lessThan(entry, vec4(limit))) &
+                      uvec4(notEqual(children, uvec4(kEmptyChild))));
+    return mix(vec4(kFarthest), entry, hit);
+}
+
+void visitNode(uint node, Query query, RayTransform transform, inout Traversal state, inout uint overflows) {
+    uint word = node * kNodeWords;
+    uvec4 children = fetchNode(word + 3u);
+    vec4 entries = childEntries(fetchNode(word), fetchNode(word + 1u), fetchNode(word + 2u), children, query.ray.origin,
+                                transform.inverseDirection, state.distance);
+    // Farthest first on the stack; a sorting network of five comparisons.
+    sortPair(entries.x, children.x, entries.y, children.y);
+    sortPair(entries.z, children.z, entries.w, children.w);
+    sortPair(entries.x, children.x, entries.z, children.z);
+    sortPair(entries.y, children.y, entries.w, children.w);
+    sortPair(entries.y, children.y, entries.z, children.z);
+    pushChild(entries.x, children.x, state.stackCount, overflows);
+    pushChild(entries.y, children.y, state.stackCount, overflows);
+    pushChild(entries.z, children.z, state.stackCount, overflows);
+    pushChild(entries.w, children.w, state.stackCount, overflows);
+}
+
+void testPrimitive(uint index, Query query, RayTransform transform, inout Traversal state) {
+    if (index == query.ignored || index == query.alsoIgnored) return;
+    PrimitiveRecord primitive = readPrimitive(index);
+    float distance;
+    if (kSpheres && (floatBitsToUint(primitive.p2Id.w) & kSphereBit) != 0u) {
+        distance = intersectSphere(primitive.p0Material.xyz, primitive.p1Light.x, query.ray.origin, query.ray.direction);
+    } else {
+        distance = intersectTriangle(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
+                                     query.ray.origin, transform).distance;
+    }
+    if (distance > 0.0 && distance < state.distance) {
+        state.distance = distance;
+        state.primitive = index;
+    }
+}
+
+// Goes on until the walk is finished (stackCount 0) or `budget` steps (node visits and primitive tests) are used up.
+void traverse(Query query, RayTransform transform, inout Traversal state, inout uint budget, inout uint overflows) {
+    while (state.stackCount > 0u && budget > 0u) {
+        --budget;
+        --state.stackCount;
+        uint item = stackItems[state.stackCount];
+        if (stackEntries[state.stackCount] >= state.distance) continue;
+        if ((item & kLeafBit) == 0u) {
+            visitNode(item, query, transform, state, overflows);
+            continue;
+        }
+        uint first = item & kLeafFirstMask;
+        uint count = ((item & ~kLeafBit) >> kLeafCountShift) + 1u;
+        for (uint i = 0u; i < count; ++i) testPrimitive(first + i, query, transform, state);
+        budget -= min(budget, count);
+        if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
+    }
+}
+
+#endif

@@ -1,0 +1,42 @@
+// Watertight ray-triangle test (Woop, Benthin and Wald 2013).
+#ifndef ISOLUX_GEOMETRY_TRIANGLE_GLSL
+#define ISOLUX_GEOMETRY_TRIANGLE_GLSL
+
+#include "geometry/ray.glsl"
+
+struct TriangleHit {
+    float distance; // in units of the direction; 0 or less: no hit
+    float b0;       // barycentric coordinates of p0 and p1
+    float b1;
+};
+
+// A vertex seen along the ray: xy sheared so that the ray is the z axis, z scaled to distance. `precise` keeps every
+// vertex's value the same in all triangles that share it, whichever place it takes there.
+vec3 shearVertex(vec3 p, vec3 origin, RayTransform transform) {
+    precise vec3 v = rotateToAxis(p - origin, transform.axis);
+    precise float x = v.x - transform.shear.x * v.z;
+    precise float y = v.y - transform.shear.y * v.z;
+    precise float z = transform.shear.z * v.z;
+    return vec3(x, y, z);
+}
+
+// The shared edge of two triangles gives exactly opposite values, so a ray cannot slip between them; a value of zero
+// counts as inside for both.
+TriangleHit intersectTriangle(vec3 p0, vec3 p1, vec3 p2, vec3 origin, RayTransform transform) {
+    vec3 a = shearVertex(p0, origin, transform);
+    vec3 b = shearVertex(p1, origin, transform);
+    vec3 c = shearVertex(p2, origin, transform);
+    precise float u = c.x * b.y - c.y * b.x;
+    precise float v = a.x * c.y - a.y * c.x;
+    precise float w = b.x * a.y - b.y * a.x;
+    TriangleHit hit = TriangleHit(0.0, 0.0, 0.0);
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return hit;
+    float determinant = u + v + w;
+    if (determinant == 0.0) return hit;
+    hit.distance = (u * a.z + v * b.z + w * c.z) / determinant;
+    hit.b0 = u / determinant;
+    hit.b1 = v / determinant;
+    return hit;
+}
+
+#endif

@@ -1,0 +1,270 @@
+// Path tracing with next-event estimation, multiple importance sampling and Russian roulette. A lane works through one
+// pixel's batch of samples; a dispatch gives it a budget of steps, and what is unfinished is stored and resumed.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "kernels/scene_bindings.glsl"
+#include "film/accumulate.glsl"
+#include "geometry/surface.glsl"
+#include "geometry/traverse.glsl"
+#include "light/area_light.glsl"
+#include "material/lambertian.glsl"
+#include "shared/path_records.h"
+
+layout(constant_id = 6) const bool kRoulette = true;
+layout(constant_id = 7) const bool kPathSignatures = false;
+
+layout(set = 0, binding = 8, std140) uniform RenderBuffer { RenderParameters render; };
+layout(set = 0, binding = 9, std430) buffer PathBuffer { PathRecord paths[]; };
+layout(set = 0, binding = 10, std430) buffer FilmBuffer { FilmRecord films[]; };
+layout(set = 0, binding = 11, std430) buffer StackBuffer { uvec2 stacks[]; };
+layout(set = 0, binding = 12, std430) buffer CompletionBuffer { CompletionRecord completion; };
+layout(push_constant) uniform Parameters { DispatchParameters parameters; };
+
+const float kMaxSurvival = 1.0 - 1.0 / 1024.0; // host/scene/render_settings.h
+
+// A path in registers: PathRecord by names.
+struct Path {
+    uint phase;
+    uint sampleIndex; // within the batch
+    uint depth;
+    uint ending; // kGoesOn, kEnds, kEndsByRoulette: what follows the pending shadow ray
+    Ray ray;     // the next ray to the nearest hit; its origin is the shadow ray's too
+    uint leaves; // flat primitive it starts from, or kNone
+    float pdf;   // of its direction, in solid angle
+    vec3 throughput;
+    vec3 radiance;
+    uint signature;
+    vec3 shadowDirection;
+    uint shadowPrimitive;
+    vec3 shadowRadiance;
+    Traversal traversal;
+};
+
+uvec2 pixel;
+FilmRecord film;
+Path path;
+
+// The pixel of a lane: workgroups take 8 x 8 blocks of the tile, so that neighbouring lanes see similar paths.
+uvec2 pixelOfLane(uint lane) {
+    uint blocksPerRow = (parameters.tile.z + 7u) / 8u;
+    uint block = lane / 64u;
+    uint within = lane % 64u;
+    return uvec2((block % blocksPerRow) * 8u + within % 8u, (block / blocksPerRow) * 8u + within / 8u);
+}
+
+uvec4 randomBlock(uint block) {
+    return philox4x32(uvec4(pixel, parameters.batch.x + path.sampleIndex, block), render.imageSeed.zw);
+}
+
+void recordEvent(uint event) {
+    if (kPathSignatures) path.signature = (path.signature ^ event) * kSignatureFactor;
+}
+
+void beginNearest() {
+    path.phase = kPhaseNearest;
+    path.traversal = beginTraversal(kFarthest, render.sceneCounts.x);
+}
+
+void beginSample() {
+    uvec4 random = randomBlock(0u);
+    vec2 position = (2.0 * (vec2(pixel) + vec2(unitReal(random.x), unitReal(random.y)))) / vec2(render.imageSeed.xy) - 1.0;
+    path.ray.direction = normalize(position.x * render.cameraRight.xyz - position.y * render.cameraUp.xyz + render.cameraForward.xyz);
+    path.ray.origin = render.cameraPosition.xyz;
+    path.leaves = kNone;
+    path.depth = 0u;
+    path.pdf = 0.0;
+    path.throughput = vec3(1.0);
+    path.radiance = vec3(0.0);
+    path.signature = kSignatureStart;
+    path.ending = kGoesOn;
+    beginNearest();
+}
+
+void endSample() {
+    accumulateSample(film, path.radiance);
+    film.counts.z += path.signature;
+    ++path.sampleIndex;
+    if (path.sampleIndex == parameters.batch.y) {
+        path.phase = kPhaseDone;
+        return;
+    }
+    beginSample();
+}
+
+void addEmission(Surface surface, MaterialRecord material, float distance) {
+    vec3 emission = material.emission.xyz;
+    if (emission == vec3(0.0) || !(surface.front || material.emission.w != 0.0)) return;
+    float weight = 1.0;
+    if (kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
+        LightRecord light = readLight(render.tableOffsets.y, surface.light);
+        float cosine = abs(dot(path.ray.direction, surface.facing));
+        weight = powerHeuristic(path.pdf, lightPdf(light, path.ray.origin, distance, cosine));
+    }
+    path.radiance += path.throughput * emission * weight;
+}
+
+// Samples a light and leaves a pending shadow ray in the path if it could contribute.
+bool sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
+    uvec4 random = randomBlock(1u + 2u * path.depth);
+    uint index = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
+    if (index >= render.depthLights.w) {
+        film.faults.z += 1u;
+        return false;
+    }
+    LightSample light = sampleLight(readLight(render.tableOffsets.y, index), surface.position,
+                                    vec2(unitReal(random.z), unitReal(random.w)));
+    float cosine = light.pdf > 0.0 ? lambertianCosine(surface.facing, surface.shading, light.direction) : 0.0;
+    if (cosine <= 0.0) {
+        recordEvent(kSignatureNoRay);
+        return false;
+    }
+    float weight = powerHeuristic(light.pdf, lambertianPdf(cosine));
+    path.shadowRadiance = path.throughput * lambertianEval(baseColor) * light.emission * (cosine / light.pdf * weight);
+    path.shadowDirection = light.target - origin;
+    path.shadowPrimitive = light.flat_ ? light.primitive : kNone;
+    return true;
+}
+
+// Chooses the next direction, unless the path ends here.
+uint scatter(Surface surface, vec3 baseColor) {
+    uvec4 random = randomBlock(2u + 2u * path.depth);
+    float cosine;
+    vec3 wi = lambertianSample(surface.shading, vec2(unitReal(random.x), unitReal(random.y)), cosine);
+    path.throughput *= baseColor;
+    if (dot(wi, surface.facing) <= 0.0 || maxComponent(path.throughput) <= 0.0) return kEnds;
+    ++path.depth;
+    if (kRoulette && path.depth >= render.depthLights.y) {
+        float survival = min(maxComponent(path.throughput), kMaxSurvival);
+        if (unitReal(random.z) >= survival) return kEndsByRoulette;
+        path.throughput /= survival;
+    }
+    path.ray.direction = wi;
+    path.pdf = lambertianPdf(cosine);
+    return kGoesOn;
+}
+
+void goOnOrEnd() {
+    if (path.ending == kGoesOn) {
+        beginNearest();
+        return;
+    }
+    if (path.ending == kEndsByRoulette) recordEvent(kSignatureRoulette);
+    endSample();
+}
+
+void shadeHit(RayTransform transform) {
+    Surface surface = surfaceAt(path.traversal.primitive, path.ray, transform, path.traversal.distance, kSpheres);
+    if (path.depth == 0u) film.mean.w += 1.0;
+    recordEvent(surface.id);
+    if (surface.material >= render.sceneCounts.z) {
+        film.faults.z += 1u;
+        endSample();
+        return;
+    }
+    MaterialRecord material = readMaterial(render.tableOffsets.x, surface.material);
+    addEmission(surface, material, path.traversal.distance);
+    if (path.depth >= render.depthLights.x) {
+        endSample();
+        return;
+    }
+    vec3 origin = offsetOrigin(surface.position, surface.error, surface.facing);
+    bool shadow = kLights != kLightsNone && sampleDirect(surface, origin, material.baseColor.xyz);
+    path.ending = scatter(surface, material.baseColor.xyz);
+    path.ray.origin = origin;
+    path.leaves = surface.flat_ ? path.traversal.primitive : kNone;
+    if (shadow) {
+        path.phase = kPhaseShadow;
+        path.traversal = beginTraversal(1.0, render.sceneCounts.x);
+    } else {
+        goOnOrEnd();
+    }
+}
+
+void finishShadow() {
+    bool reached = path.traversal.primitive == kNone;
+    recordEvent(reached ? kSignatureReached : kSignatureOccluded);
+    if (reached) path.radiance += path.shadowRadiance;
+    goOnOrEnd();
+}
+
+// One ray, or as much of it as the budget allows.
+void advance(inout uint budget) {
+    bool shadow = path.phase == kPhaseShadow;
+    Query query;
+    query.ray = Ray(path.ray.origin, shadow ? path.shadowDirection : path.ray.direction);
+    query.kind = shadow ? kAnyHit : kNearestHit;
+    query.ignored = path.leaves;
+    query.alsoIgnored = shadow ? path.shadowPrimitive : kNone;
+    RayTransform transform = transformFor(query.ray);
+    traverse(query, transform, path.traversal, budget, film.faults.y);
+    if (path.traversal.stackCount > 0u) return;
+    film.counts.y += 1u;
+    if (shadow) {
+        finishShadow();
+    } else if (path.traversal.primitive == kNone) {
+        recordEvent(kNone);
+        endSample();
+    } else {
+        shadeHit(transform);
+    }
+}
+
+void loadPath(uint lane) {
+    PathRecord record = paths[lane];
+    path.phase = record.progress.x;
+    path.sampleIndex = record.progress.y;
+    path.depth = record.bounce.x;
+    path.ending = record.bounce.y;
+    path.signature = record.bounce.z;
+    path.ray = Ray(record.originPdf.xyz, record.directionDistance.xyz);
+    path.leaves = record.ignored.x;
+    path.pdf = record.originPdf.w;
+    path.throughput = record.throughput.xyz;
+    path.radiance = record.radiance.xyz;
+    path.shadowDirection = record.shadowDirection.xyz;
+    path.shadowPrimitive = record.ignored.y;
+    path.shadowRadiance = record.shadowRadiance.xyz;
+    path.traversal = Traversal(record.directionDistance.w, record.progress.z, record.progress.w);
+    for (uint i = 0u; i < path.traversal.stackCount; ++i) {
+        uvec2 entry = stacks[lane * kStackSize + i];
+        stackItems[i] = entry.x;
+        stackEntries[i] = uintBitsToFloat(entry.y);
+    }
+}
+
+void storePath(uint lane) {
+    paths[lane] = PathRecord(vec4(path.ray.origin, path.pdf), vec4(path.ray.direction, path.traversal.distance),
+                             vec4(path.throughput, 0.0), vec4(path.radiance, 0.0), vec4(path.shadowDirection, 0.0),
+                             vec4(path.shadowRadiance, 0.0),
+                             uvec4(path.phase, path.sampleIndex, path.traversal.primitive, path.traversal.stackCount),
+                             uvec4(path.depth, path.ending, path.signature, 0u),
+                             uvec4(path.leaves, path.shadowPrimitive, 0u, 0u));
+    if (path.phase == kPhaseDone) return;
+    for (uint i = 0u; i < path.traversal.stackCount; ++i)
+        stacks[lane * kStackSize + i] = uvec2(stackItems[i], floatBitsToUint(stackEntries[i]));
+}
+
+void main() {
+    uint lane = gl_GlobalInvocationID.x;
+    uvec2 inTile = pixelOfLane(lane);
+    if (any(greaterThanEqual(inTile, parameters.tile.zw))) return;
+    pixel = parameters.tile.xy + inTile;
+    if (parameters.batch.w != 0u) {
+        film = FilmRecord(vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u));
+        path.sampleIndex = 0u;
+        beginSample();
+    } else {
+        loadPath(lane);
+        if (path.phase == kPhaseDone) return;
+        film = films[lane];
+    }
+    uint budget = parameters.batch.z;
+    while (budget > 0u && path.phase != kPhaseDone) {
+        --budget;
+        advance(budget);
+    }
+    storePath(lane);
+    films[lane] = film;
+    if (path.phase == kPhaseDone) atomicAdd(completion.finishedLanes.x, 1u);
+}

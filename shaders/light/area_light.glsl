@@ -1,0 +1,137 @@
+// Area lights: choosing one, sampling a point or direction on it, and the density of doing so.
+#ifndef ISOLUX_LIGHT_AREA_LIGHT_GLSL
+#define ISOLUX_LIGHT_AREA_LIGHT_GLSL
+
+#include "core/math.glsl"
+#include "core/philox.glsl"
+#include "core/scene_access.glsl"
+#include "geometry/ray.glsl"
+#include "shared/interface.h"
+
+layout(constant_id = 4) const uint kLights = kLightsMany;
+
+struct LightSample {
+    vec3 target;    // the point on the light, moved off it towards the shading point
+    vec3 direction; // unit, towards it
+    float pdf;      // solid angle, choice of light included; 0: the sample does not light the point
+    vec3 emission;
+    uint primitive;
+    bool flat_;
+};
+
+uint chooseLight(uint binOffset, uint bits, uint binWord, uint aliasWord) {
+    if (kLights == kLightsOne) return 0u;
+    uint bin = bits == 0u ? 0u : binWord >> (32u - bits);
+    uvec2 entry = fetchTable(binOffset + bin).xy;
+    return aliasWord < entry.x ? bin : entry.y;
+}
+
+// Density in solid angle of a uniform point on a triangle.
+float trianglePdf(float choice, float area, float distanceSquared, float cosine) {
+    return choice * distanceSquared / (area * cosine);
+}
+
+// 1 - cos of the half angle under which a sphere is seen, without cancellation (sin^2 = radius^2 / distance^2).
+float sphereOneMinusCosine(float sineSquared) { return sineSquared / (1.0 + sqrt(max(1.0 - sineSquared, 0.0))); }
+
+LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
+    vec3 p0 = light.p0Primitive.xyz;
+    vec3 p1 = light.p1Choice.xyz;
+    vec3 p2 = light.p2Area.xyz;
+    // Heitz 2019, "A low-distortion map between triangle and square".
+    float b0 = u.y > u.x ? 0.5 * u.x : u.x - 0.5 * u.y;
+    float b1 = u.y > u.x ? u.y - 0.5 * u.x : 0.5 * u.y;
+    float b2 = 1.0 - b0 - b1;
+    vec3 point = b0 * p0 + b1 * p1 + b2 * p2;
+    vec3 error = errorBound(7.0) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
+    vec3 normal = normalize(cross(p1 - p0, p2 - p0));
+    vec3 toLight = point - from;
+    float distanceSquared = dot(toLight, toLight);
+    LightSample result;
+    result.direction = toLight * inversesqrt(distanceSquared);
+    float cosine = -dot(result.direction, normal); // positive: seen from the front
+    bool emits = cosine > 0.0 || (cosine < 0.0 && light.emission.w != 0.0);
+    result.pdf = emits ? trianglePdf(light.p1Choice.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
+    result.target = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal);
+    result.flat_ = true;
+    return result;
+}
+
+// A point of the whole sphere, for shading points inside or on it.
+LightSample sampleSphereFromInside(LightRecord light, vec3 from, vec2 u) {
+    float radius = light.p1Choice.x;
+    float z = 1.0 - 2.0 * u.x;
+    vec3 normal = vec3(2.0 * sqrt(u.x * (1.0 - u.x)) * cosSinTurn(u.y), z);
+    vec3 point = light.p0Primitive.xyz + radius * normal;
+    vec3 toLight = point - from;
+    float distanceSquared = dot(toLight, toLight);
+    LightSample result;
+    result.direction = toLight * inversesqrt(distanceSquared);
+    float cosine = dot(result.direction, normal); // positive: the inner face is seen
+    bool emits = cosine < 0.0 || light.emission.w != 0.0;
+    result.pdf = emits && cosine != 0.0
+                     ? light.p1Choice.w * distanceSquared / (4.0 * kPi * radius * radius * abs(cosine)) : 0.0;
+    vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
+    result.target = offsetOrigin(point, error, cosine > 0.0 ? -normal : normal);
+    result.flat_ = false;
+    return result;
+}
+
+// A direction in the cone under which the sphere is seen from outside.
+LightSample sampleSphereFromOutside(LightRecord light, vec3 from, vec2 u, float sineSquared) {
+    float radius = light.p1Choice.x;
+    vec3 toCenter = light.p0Primitive.xyz - from;
+    float distanceToCenter = length(toCenter);
+    float cap = sphereOneMinusCosine(sineSquared);
+    float oneMinusCosine = u.x * cap;
+    float sineSampled = sqrt(oneMinusCosine * (2.0 - oneMinusCosine));
+    vec3 axis = toCenter / distanceToCenter;
+    vec3 tangent, bitangent;
+    frameAbout(axis, tangent, bitangent);
+    vec2 around = sineSampled * cosSinTurn(u.y);
+    LightSample result;
+    result.direction = normalize(around.x * tangent + around.y * bitangent + (1.0 - oneMinusCosine) * axis);
+    result.pdf = light.p1Choice.w / (2.0 * kPi * cap);
+    // Where the direction meets the sphere: nearer than the closest approach by the half chord.
+    float halfChord = sqrt(max(radius * radius - distanceToCenter * distanceToCenter * sineSampled * sineSampled, 0.0));
+    vec3 onRay = from + (distanceToCenter * (1.0 - oneMinusCosine) - halfChord) * result.direction;
+    vec3 normal = normalize(onRay - light.p0Primitive.xyz);
+    vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
+    result.target = offsetOrigin(light.p0Primitive.xyz + radius * normal, error, normal);
+    result.flat_ = false;
+    return result;
+}
+
+// sin^2 of the half angle of a sphere light seen from a point; 1 or more from inside.
+float sphereSineSquared(LightRecord light, vec3 from) {
+    vec3 toCenter = light.p0Primitive.xyz - from;
+    return light.p1Choice.x * light.p1Choice.x / dot(toCenter, toCenter);
+}
+
+LightSample sampleLight(LightRecord light, vec3 from, vec2 u) {
+    LightSample result;
+    if (light.p2Area.w > 0.0) {
+        result = sampleTriangle(light, from, u);
+    } else {
+        float sineSquared = sphereSineSquared(light, from);
+        if (sineSquared < 1.0) {
+            result = sampleSphereFromOutside(light, from, u, sineSquared);
+        } else {
+            result = sampleSphereFromInside(light, from, u);
+        }
+    }
+    result.emission = light.emission.xyz;
+    result.primitive = floatBitsToUint(light.p0Primitive.w);
+    return result;
+}
+
+// The density with which sampleLight would have chosen the point of a light that a ray from `from` has hit.
+float lightPdf(LightRecord light, vec3 from, float distance, float cosine) {
+    if (light.p2Area.w > 0.0) return trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine);
+    float sineSquared = sphereSineSquared(light, from);
+    float radius = light.p1Choice.x;
+    return sineSquared < 1.0 ? light.p1Choice.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared))
+                             : light.p1Choice.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
+}
+
+#endif

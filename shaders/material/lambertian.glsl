@@ -1,0 +1,32 @@
+// The Lambertian lobe, two-sided. wi points away from the surface; eval never includes the cosine (host/scene/README.md).
+#ifndef ISOLUX_MATERIAL_LAMBERTIAN_GLSL
+#define ISOLUX_MATERIAL_LAMBERTIAN_GLSL
+
+#include "core/math.glsl"
+
+// Cosine to the shading normal, 0 where wi does not leave on the facing side.
+float lambertianCosine(vec3 facing, vec3 shading, vec3 wi) {
+    return dot(wi, facing) > 0.0 ? max(dot(wi, shading), 0.0) : 0.0;
+}
+
+vec3 lambertianEval(vec3 baseColor) { return baseColor * kInvPi; }
+
+// Solid-angle density of cosine-weighted sampling.
+float lambertianPdf(float cosine) { return cosine * kInvPi; }
+
+// Cosine-weighted direction about the shading normal by the concentric map (Shirley and Chiu 1997); cosine is exact
+// for grazing directions too.
+vec3 lambertianSample(vec3 shading, vec2 u, out float cosine) {
+    vec2 d = 2.0 * u - 1.0;
+    bool byX = abs(d.x) > abs(d.y);
+    float radius = byX ? d.x : d.y;
+    float other = byX ? d.y : d.x;
+    vec2 sc = sinCosOctant(radius == 0.0 ? 0.0 : 0.25 * kPi * (other / radius));
+    vec2 disk = radius * (byX ? sc.yx : sc.xy);
+    cosine = sqrt((1.0 - abs(radius)) * (1.0 + abs(radius)));
+    vec3 tangent, bitangent;
+    frameAbout(shading, tangent, bitangent);
+    return disk.x * tangent + disk.y * bitangent + cosine * shading;
+}
+
+#endif

@@ -1,0 +1,77 @@
+// What a path keeps between dispatches, what it leaves on the film, and the parameters of a render and of a dispatch.
+#ifndef ISOLUX_SHARED_PATH_RECORDS_H
+#define ISOLUX_SHARED_PATH_RECORDS_H
+
+#include "shared/types.h"
+
+ISOLUX_SHARED_BEGIN
+
+// One lane's path: all that is needed to go on where the last dispatch stopped, also in the middle of a traversal.
+struct PathRecord {
+    vec4 originPdf;         // origin of the next ray; w: pdf of its direction (solid angle)
+    vec4 directionDistance; // its direction; w: nearest distance found so far by an unfinished traversal
+    vec4 throughput;        // w unused
+    vec4 radiance;          // w unused
+    vec4 shadowDirection;   // from the origin to the light's point; w unused
+    vec4 shadowRadiance;    // what arrives if nothing is in between; w unused
+    uvec4 progress;         // phase, sample within the batch, nearest primitive found so far, entries on the stack
+    uvec4 bounce;           // bounces so far, ending, path signature; w unused
+    uvec4 ignored;          // flat primitive the ray leaves, flat light the shadow ray ends at (kNone: neither); z, w unused
+};
+ISOLUX_CHECK_SIZE(PathRecord, 144);
+
+// Statistics of one batch of samples of one pixel.
+struct FilmRecord {
+    vec4 mean;             // rgb; w: samples whose camera ray met a surface
+    vec4 squaredDeviation; // rgb, luminance
+    uvec4 counts;          // samples, rays, sum of path signatures, samples that were NaN or infinite
+    uvec4 faults;          // negative samples, stack overflows, invalid indices; w unused
+};
+ISOLUX_CHECK_SIZE(FilmRecord, 64);
+
+// Constant over a render.
+struct RenderParameters {
+    vec4 cameraPosition; // device space; w unused
+    vec4 cameraRight;    // scaled by aspect * tan(yfov / 2)
+    vec4 cameraUp;       // scaled by tan(yfov / 2)
+    vec4 cameraForward;
+    uvec4 imageSeed;     // width, height, seed low, seed high
+    uvec4 depthLights;   // maximum depth, roulette start, bits of the alias table, number of lights
+    uvec4 tableOffsets;  // first word of materials, lights, light bins in the tables buffer; w: words in the tables
+    uvec4 sceneCounts;   // nodes, primitives, materials; w unused
+};
+ISOLUX_CHECK_SIZE(RenderParameters, 128);
+
+// Changes with every dispatch.
+struct DispatchParameters {
+    uvec4 tile;   // first pixel x, y; width, height in pixels
+    uvec4 batch;  // first sample, samples, step budget, 1 if the paths are to be started afresh
+};
+ISOLUX_CHECK_SIZE(DispatchParameters, 32);
+
+// How many lanes have finished their batch; the host compares it with the number of lanes.
+struct CompletionRecord {
+    uvec4 finishedLanes; // x; others unused
+};
+ISOLUX_CHECK_SIZE(CompletionRecord, 16);
+
+// PathRecord.progress.x
+ISOLUX_CONSTANT uint kPhaseNearest = 0u; // the next ray looks for the nearest hit
+ISOLUX_CONSTANT uint kPhaseShadow = 1u;  // the next ray asks whether the light is seen
+ISOLUX_CONSTANT uint kPhaseDone = 2u;    // all samples of the batch are on the film
+
+// PathRecord.bounce.y: what follows the pending shadow ray
+ISOLUX_CONSTANT uint kGoesOn = 0u;
+ISOLUX_CONSTANT uint kEnds = 1u;
+ISOLUX_CONSTANT uint kEndsByRoulette = 2u;
+
+ISOLUX_CONSTANT uint kSignatureStart = 2166136261u;
+ISOLUX_CONSTANT uint kSignatureFactor = 16777619u;
+ISOLUX_CONSTANT uint kSignatureOccluded = 0u;
+ISOLUX_CONSTANT uint kSignatureReached = 1u;
+ISOLUX_CONSTANT uint kSignatureNoRay = 2u;
+ISOLUX_CONSTANT uint kSignatureRoulette = 3u;
+
+ISOLUX_SHARED_END
+
+#endif
