@@ -4,15 +4,18 @@
 
 namespace isolux {
 
-void initialiseLog(Verbosity verbosity) {
+void initialiseLog() {
     auto logger = spdlog::stderr_logger_mt("isolux");
     logger->set_pattern("%n: %l: %v");
-    switch (verbosity) {
-    case Verbosity::quiet: logger->set_level(spdlog::level::err); break;
-    case Verbosity::normal: logger->set_level(spdlog::level::info); break;
-    case Verbosity::verbose: logger->set_level(spdlog::level::debug); break;
-    }
     spdlog::set_default_logger(std::move(logger));
+}
+
+void setVerbosity(Verbosity verbosity) {
+    switch (verbosity) {
+    case Verbosity::quiet: spdlog::set_level(spdlog::level::err); break;
+    case Verbosity::normal: spdlog::set_level(spdlog::level::info); break;
+    case Verbosity::verbose: spdlog::set_level(spdlog::level::debug); break;
+    }
 }
 
 } // namespace isolux

@@ -5,8 +5,11 @@
 
 namespace isolux {
 
-/// Sets up the logger: "isolux: warning: ..." on standard error. `quiet` keeps errors only.
 enum class Verbosity { quiet, normal, verbose };
-void initialiseLog(Verbosity verbosity);
+
+/// Sets up the logger: "isolux: warning: ..." on standard error.
+void initialiseLog();
+/// `quiet` keeps errors only, `verbose` adds what is done step by step.
+void setVerbosity(Verbosity verbosity);
 
 } // namespace isolux

@@ -30,8 +30,14 @@ std::array<float, 9> channelValues(const PixelStatistics& pixel) {
     const Vec3f variance(pixel.variance());
     const double count = static_cast<double>(pixel.sampleCount);
     const double coverage = pixel.sampleCount == 0 ? 0.0 : static_cast<double>(pixel.hitCount) / count;
-    return {mean.x,     mean.y,     mean.z,     static_cast<float>(coverage),
-            variance.x, variance.y, variance.z, static_cast<float>(pixel.luminanceVariance()),
+    return {mean.x,
+            mean.y,
+            mean.z,
+            static_cast<float>(coverage),
+            variance.x,
+            variance.y,
+            variance.z,
+            static_cast<float>(pixel.luminanceVariance()),
             static_cast<float>(count)};
 }
 

@@ -1,3 +1,4 @@
+// Writing image files: encoded in memory, written beside the target, flushed and renamed over it.
 #include "film/image.h"
 
 #include "core/error.h"
@@ -20,10 +21,6 @@ namespace isolux {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The limits of what is read: a header that asks for more is refused before memory is taken.
-constexpr int kMaxChannels = 256;
-constexpr int kMaxImageMegabytes = 8192;
 
 enum class Format { openExr, png, hdr };
 
@@ -72,10 +69,14 @@ OIIO::ImageSpec makeSpec(const Image& image, const std::vector<std::string>& cha
 
 /// EXR has 32-bit integers only: OpenImageIO drops longer ones in silence, so they go in as decimal digits.
 void setAttribute(OIIO::ImageSpec& spec, const std::string& name, std::int64_t value) {
-    if (std::in_range<int>(value)) spec.attribute(name, static_cast<int>(value));
-    else spec.attribute(name, std::to_string(value));
+    if (std::in_range<int>(value))
+        spec.attribute(name, static_cast<int>(value));
+    else
+        spec.attribute(name, std::to_string(value));
 }
-void setAttribute(OIIO::ImageSpec& spec, const std::string& name, const std::string& value) { spec.attribute(name, value); }
+void setAttribute(OIIO::ImageSpec& spec, const std::string& name, const std::string& value) {
+    spec.attribute(name, value);
+}
 void setAttribute(OIIO::ImageSpec& spec, const std::string& name, double value) {
     spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), &value);
 }
@@ -107,7 +108,8 @@ std::optional<std::size_t> visibleAlpha(const Image& image, const std::array<std
     for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
         const float coverage = image.value(pixel, *alpha);
         opaque = opaque && coverage == 1.0f;
-        const bool lit = std::any_of(rgb.begin(), rgb.end(), [&](std::size_t c) { return image.value(pixel, c) != 0.0f; });
+        const bool lit =
+            std::any_of(rgb.begin(), rgb.end(), [&](std::size_t c) { return image.value(pixel, c) != 0.0f; });
         if (coverage == 0.0f && lit) return std::nullopt;
     }
     return opaque ? std::nullopt : alpha;
@@ -141,22 +143,31 @@ FileContent pngContent(const Image& image, const fs::path& path) {
 
 // --- HDR ---
 
-/// What RGBE can hold, with half a step of the shared exponent added: OpenImageIO's encoder truncates, which would make
-/// every image darker by 0.2 %.
+/// Half of RGBE's step for a colour whose largest channel is `largest`, or that of the next exponent if the sum needs
+/// it.
+float halfRgbeStep(float largest) {
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    const float half = std::ldexp(0.5f, exponent - 8);
+    return largest + half < std::ldexp(1.0f, exponent) ? half : 2.0f * half;
+}
+
+/// What RGBE can hold, with half a step added: OpenImageIO's encoder truncates, which would darken every image by 0.2
+/// %.
 Vec3f prepareForRgbe(const Vec3f& radiance) {
     constexpr float kLargest = 1.6e38f; // below 2^127
     Vec3f rgb(0.0f);
     for (int c = 0; c < 3; ++c) rgb[c] = radiance[c] > 0.0f ? std::min(radiance[c], kLargest) : 0.0f;
-    int exponent = 0;
-    std::frexp(maxComponent(rgb), &exponent);
-    return rgb + Vec3f(maxComponent(rgb) > 0.0f ? std::ldexp(0.5f, exponent - 8) : 0.0f);
+    const float largest = maxComponent(rgb);
+    return largest > 0.0f ? rgb + Vec3f(halfRgbeStep(largest)) : rgb;
 }
 
 FileContent hdrContent(const Image& image, const fs::path& path) {
     const std::array<std::size_t, 3> rgb = requireRgb(image, path);
     FileContent content{makeSpec(image, {"R", "G", "B"}, OIIO::TypeDesc::FLOAT), {}, {}};
     for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
-        const Vec3f value = prepareForRgbe({image.value(pixel, rgb[0]), image.value(pixel, rgb[1]), image.value(pixel, rgb[2])});
+        const Vec3f value =
+            prepareForRgbe({image.value(pixel, rgb[0]), image.value(pixel, rgb[1]), image.value(pixel, rgb[2])});
         content.floats.insert(content.floats.end(), {value.x, value.y, value.z});
     }
     return content;
@@ -175,7 +186,9 @@ FileContent makeContent(Format format, const Image& image, const fs::path& path)
 
 /// The bytes of the file. Encoding into memory leaves the writing, and so every failing write, to this file's own code.
 std::vector<unsigned char> encode(Format format, const FileContent& content, const fs::path& path) {
-    const auto fail = [&](const std::string& message) { throwFailure(path.string(), "cannot encode the image: " + message); };
+    const auto fail = [&](const std::string& message) {
+        throwFailure(path.string(), "cannot encode the image: " + message);
+    };
     std::vector<unsigned char> encoded;
     OIIO::Filesystem::IOVecOutput memory(encoded);
     const auto output = OIIO::ImageOutput::create(pluginName(format));
@@ -218,69 +231,6 @@ void writeBytes(const fs::path& file, std::span<const unsigned char> bytes, cons
     if (!stream) throwFailure(target.string(), std::string("cannot write the image: ") + std::strerror(errno));
 }
 
-// --- Reading ---
-
-void requireRegularFile(const fs::path& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::not_found) throwBadInput(path.string(), "no such file");
-    if (error) throwBadInput(path.string(), error.message());
-    if (fs::is_directory(status)) throwBadInput(path.string(), "is a folder, not an image");
-    if (!fs::is_regular_file(status)) throwBadInput(path.string(), "is not a regular file");
-}
-
-/// Whether the description is one this program can hold; OpenImageIO's own limits are checked by some formats only.
-void requireReasonable(const OIIO::ImageSpec& spec, const fs::path& path) {
-    const double megabytes = 4e-6 * spec.width * spec.height * spec.nchannels;
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1) throwBadInput(path.string(), "not a two-dimensional image");
-    if (spec.nchannels > kMaxChannels) throwBadInput(path.string(), "more channels than the limit of 256");
-    if (megabytes > kMaxImageMegabytes) throwBadInput(path.string(), "larger than the limit of 8 GB of pixels");
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height) {
-        throwBadInput(path.string(), "its data window differs from its display window: crop or pad it first");
-    }
-}
-
-Metadata readMetadata(const OIIO::ImageSpec& spec) {
-    Metadata metadata;
-    for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
-        const std::string name = attribute.name().string();
-        const OIIO::TypeDesc type = attribute.type();
-        if (type.arraylen != 0 || type.aggregate != OIIO::TypeDesc::SCALAR) continue;
-        if (name.starts_with("oiio:") || name == "compression") continue; // of this file, not of the image
-        if (type.basetype == OIIO::TypeDesc::STRING) metadata[name] = attribute.get_string();
-        else if (type.is_floating_point()) metadata[name] = type.basetype == OIIO::TypeDesc::DOUBLE ? *static_cast<const double*>(attribute.data()) : double{attribute.get_float()};
-        else metadata[name] = std::int64_t{attribute.get_int()};
-    }
-    return metadata;
-}
-
-bool isAuxiliary(const std::string& channelName) { return channelName == "A" || channelName == "Z"; }
-
-/// Integer files: every colour channel from sRGB to linear, then multiplied by alpha if the file stores it apart.
-void linearise(Image& image, const OIIO::ImageSpec& spec) {
-    const auto alpha = image.channel("A");
-    const bool associate = alpha && spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
-    const std::size_t channelCount = image.channels.size();
-    for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
-        float* const values = image.values.data() + pixel * channelCount;
-        const double scale = associate ? double{values[*alpha]} : 1.0;
-        for (std::size_t c = 0; c < channelCount; ++c) {
-            if (!isAuxiliary(image.channels[c])) values[c] = static_cast<float>(scale * linearFromSrgb(double{values[c]}));
-        }
-    }
-}
-
-std::unique_ptr<OIIO::ImageInput> openImage(const fs::path& path) {
-    requireRegularFile(path);
-    OIIO::attribute("limits:channels", kMaxChannels);
-    OIIO::attribute("limits:imagesize_MB", kMaxImageMegabytes);
-    OIIO::ImageSpec request;
-    request.attribute("oiio:UnassociatedAlpha", 1); // colour as stored: OpenImageIO would multiply the encoded bytes
-    auto input = OIIO::ImageInput::open(path.string(), &request);
-    if (!input) throwBadInput(path.string(), "not an image that can be read: " + OIIO::geterror());
-    return input;
-}
-
 } // namespace
 
 void writeImage(const fs::path& path, const Image& image) {
@@ -300,19 +250,6 @@ void checkImagePath(const fs::path& path) {
     if (fs::is_directory(path, error)) throwBadInput(path.string(), "is a folder");
     const TemporaryFile probe(path); // permissions alone would not tell of a read-only file system
     if (!std::ofstream(probe.path())) throwBadInput(path.string(), "its folder cannot be written to");
-}
-
-Image readImage(const fs::path& path) {
-    const auto input = openImage(path);
-    const OIIO::ImageSpec& spec = input->spec();
-    requireReasonable(spec, path);
-    Image image{static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height), spec.channelnames, {}, readMetadata(spec)};
-    image.values.resize(image.pixelCount() * image.channels.size());
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data())) {
-        throwBadInput(path.string(), "damaged or truncated: " + input->geterror());
-    }
-    if (!spec.format.is_floating_point()) linearise(image, spec);
-    return image;
 }
 
 } // namespace isolux

@@ -10,6 +10,8 @@
 namespace isolux {
 namespace {
 
+constexpr std::uintmax_t kLargestBuffer = std::uintmax_t{1} << 34;
+
 class BufferReader {
 public:
     BufferReader(const BufferSources& sources, ContentHash& hash) : sources_(sources), hash_(hash) {}
@@ -18,7 +20,8 @@ public:
         const ByteSpan bytes = source(buffer, index);
         const std::uint64_t length = buffer.at("byteLength").integer();
         if (length > bytes.size())
-            buffer.at("byteLength").fail(fmt::format("is {} but there are only {} bytes of data", length, bytes.size()));
+            buffer.at("byteLength")
+                .fail(fmt::format("is {} but there are only {} bytes of data", length, bytes.size()));
         buffers_.spans.push_back(bytes.first(static_cast<std::size_t>(length)));
     }
 
@@ -28,7 +31,7 @@ private:
     ByteSpan source(const JsonReader& buffer, std::size_t index) {
         const std::optional<JsonReader> uri = buffer.find("uri");
         if (!uri) return binaryChunk(buffer, index);
-        const std::string text = uri->string();
+        const std::string& text = uri->string();
         if (isDataUri(text)) return keep(decodeDataUri(text, *uri));
         return file(resolveUri(text, sources_.folder, *uri), *uri);
     }
@@ -43,7 +46,7 @@ private:
     // A file is read once, however many buffers name it.
     ByteSpan file(const std::filesystem::path& path, const JsonReader& uri) {
         if (const auto known = files_.find(path); known != files_.end()) return known->second;
-        const ByteSpan bytes = keep(readRegularFile(path, uri.context(), uri.pointer()));
+        const ByteSpan bytes = keep(readRegularFile(path, {uri.context(), uri.pointer(), kLargestBuffer}));
         hash_.add(bytes);
         return files_.emplace(path, bytes).first->second;
     }

@@ -25,18 +25,21 @@ std::string_view describe(fs::file_type type) {
 
 } // namespace
 
-Bytes readRegularFile(const fs::path& path, const LoadContext& context, std::string_view pointer) {
+Bytes readRegularFile(const fs::path& path, const ReadRequest& request) {
     const std::string name = printable(path.string());
+    const auto fail = [&](const std::string& message) { request.context.fail(request.pointer, message); };
     std::error_code error;
     const fs::file_type type = fs::status(path, error).type();
-    if (type != fs::file_type::regular) context.fail(pointer, fmt::format("cannot read '{}': {}", name, describe(type)));
+    if (type != fs::file_type::regular) fail(fmt::format("cannot read '{}': {}", name, describe(type)));
     const std::uintmax_t size = fs::file_size(path, error);
     std::ifstream stream(path, std::ios::binary);
-    if (error || !stream) context.fail(pointer, fmt::format("cannot open '{}'; check its permissions", name));
+    if (error || !stream) fail(fmt::format("cannot open '{}'; check its permissions", name));
+    if (size > request.largest)
+        fail(fmt::format("'{}' has {} bytes; at most {} are read", name, size, request.largest));
     Bytes bytes(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::uintmax_t>(stream.gcount()) != size)
-        context.fail(pointer, fmt::format("could read only {} of the {} bytes of '{}'", stream.gcount(), size, name));
+        fail(fmt::format("could read only {} of the {} bytes of '{}'", stream.gcount(), size, name));
     return bytes;
 }
 

@@ -15,9 +15,15 @@ class LoadContext;
 using Bytes = std::vector<std::uint8_t>;
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// Reads a whole regular file; a missing file, directory, FIFO or device is an error at `pointer`, and is never opened.
-[[nodiscard]] Bytes readRegularFile(const std::filesystem::path& path, const LoadContext& context,
-                                    std::string_view pointer);
+/// Where errors of reading a file are reported, and how large it may be.
+struct ReadRequest {
+    const LoadContext& context;
+    std::string_view pointer;
+    std::uintmax_t largest = 0;
+};
+
+/// Reads a whole regular file. A missing file, directory, FIFO or device is an error, and is never opened.
+[[nodiscard]] Bytes readRegularFile(const std::filesystem::path& path, const ReadRequest& request);
 
 /// 64-bit FNV-1a (Fowler, Noll and Vo), to tell scenes apart; no protection against forgery.
 class ContentHash {

@@ -29,13 +29,15 @@ struct Chunk {
 /// Takes the first chunk off `rest`.
 Chunk takeChunk(ByteSpan& rest, const LoadContext& context) {
     if (rest.size() < kChunkHeaderBytes)
-        context.fail("", fmt::format("{} stray bytes where a GLB chunk should start; the file is damaged", rest.size()));
+        context.fail("",
+                     fmt::format("{} stray bytes where a GLB chunk should start; the file is damaged", rest.size()));
     const std::uint32_t length = readWord(rest, 0);
     const Chunk header{readWord(rest, 4), {}};
     rest = rest.subspan(kChunkHeaderBytes);
     if (length > rest.size())
-        context.fail("", fmt::format("a GLB chunk claims {} bytes but only {} are left; the file is cut short or damaged",
-                                     length, rest.size()));
+        context.fail("",
+                     fmt::format("a GLB chunk claims {} bytes but only {} are left; the file is cut short or damaged",
+                                 length, rest.size()));
     const ByteSpan data = rest.first(length);
     rest = rest.subspan(length);
     return {header.type, data};

@@ -5,6 +5,11 @@
 #include <fmt/format.h>
 
 namespace isolux {
+namespace {
+
+constexpr std::size_t kMostWarnings = 32;
+
+} // namespace
 
 std::string printable(std::string_view text) {
     constexpr std::size_t kLongest = 120;
@@ -25,19 +30,26 @@ void LoadContext::fail(std::string_view pointer, std::string_view message) const
 }
 
 void LoadContext::warn(std::string_view pointer, std::string_view message) {
-    const auto [entry, isNew] = warningOf_.try_emplace(std::string(message), warnings_.size());
-    if (isNew) warnings_.push_back({printable(pointer), std::string(message), 0});
-    ++warnings_[entry->second].count;
+    const auto entry = warningOf_.find(message);
+    if (entry != warningOf_.end()) {
+        ++warnings_[entry->second].count;
+    } else if (warnings_.size() < kMostWarnings) {
+        warningOf_.emplace(message, warnings_.size());
+        warnings_.push_back({printable(pointer), std::string(message), 1});
+    } else {
+        ++unlisted_;
+    }
 }
 
 std::vector<std::string> LoadContext::warnings() const {
     std::vector<std::string> lines;
     for (const Warning& warning : warnings_) {
-        std::string line = warning.pointer.empty() ? warning.message
-                                                   : fmt::format("{}: {}", warning.pointer, warning.message);
+        std::string line =
+            warning.pointer.empty() ? warning.message : fmt::format("{}: {}", warning.pointer, warning.message);
         if (warning.count > 1) line += fmt::format(" (and {} more)", warning.count - 1);
         lines.push_back(std::move(line));
     }
+    if (unlisted_ > 0) lines.push_back(fmt::format("{} more warnings", unlisted_));
     return lines;
 }
 

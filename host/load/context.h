@@ -22,7 +22,7 @@ public:
     /// Notes what is not supported. Equal messages are counted, not repeated.
     void warn(std::string_view pointer, std::string_view message);
 
-    /// "pointer: message (and 3 more)", one per message, in order of first appearance.
+    /// "pointer: message (and 3 more)", one per message, in order of first appearance; a file can make only so many.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
 private:
@@ -33,6 +33,7 @@ private:
     };
     std::string file_;
     std::vector<Warning> warnings_;
+    std::size_t unlisted_ = 0;
     std::map<std::string, std::size_t, std::less<>> warningOf_;
 };
 

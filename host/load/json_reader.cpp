@@ -36,10 +36,25 @@ void boundJson(std::string_view text, const LoadContext& context) {
     }
 }
 
+/// A key as part of a JSON pointer (RFC 6901, 3).
+std::string escaped(std::string_view key) {
+    std::string result;
+    for (const char c : key) {
+        if (c == '~')
+            result += "~0";
+        else if (c == '/')
+            result += "~1";
+        else
+            result += c;
+    }
+    return result;
+}
+
 std::string locate(std::string_view text, std::size_t position) {
     const std::string_view before = text.substr(0, position);
     const std::size_t lineStart = before.rfind('\n') + 1; // npos + 1 is 0: the first line
-    return fmt::format("line {}, column {}", 1 + std::count(before.begin(), before.end(), '\n'), position - lineStart + 1);
+    return fmt::format("line {}, column {}", 1 + std::count(before.begin(), before.end(), '\n'),
+                       position - lineStart + 1);
 }
 
 } // namespace
@@ -67,7 +82,7 @@ std::optional<JsonReader> JsonReader::find(std::string_view key) const {
     requireObject();
     const auto member = value_->find(key);
     if (member == value_->end()) return std::nullopt;
-    return JsonReader(*member, fmt::format("{}/{}", pointer_, key), *context_);
+    return JsonReader(*member, fmt::format("{}/{}", pointer_, escaped(key)), *context_);
 }
 
 JsonReader JsonReader::at(std::string_view key) const {
@@ -98,9 +113,9 @@ std::size_t JsonReader::sizeOf(std::string_view key) const {
     return member ? member->size() : 0;
 }
 
-std::string JsonReader::string() const {
+const std::string& JsonReader::string() const {
     if (!value_->is_string()) fail(fmt::format("must be a string, not {}", value_->type_name()));
-    return value_->get<std::string>();
+    return value_->get_ref<const std::string&>();
 }
 
 bool JsonReader::boolean() const {
@@ -115,12 +130,15 @@ double JsonReader::number() const {
 
 double JsonReader::numberBetween(double lowest, double highest) const {
     const double value = number();
-    if (!(value >= lowest && value <= highest)) fail(fmt::format("is {} but must lie in [{}, {}]", value, lowest, highest));
+    if (!(value >= lowest && value <= highest))
+        fail(fmt::format("is {} but must lie in [{}, {}]", value, lowest, highest));
     return value;
 }
 
 std::uint64_t JsonReader::integer() const {
-    if (!value_->is_number_unsigned()) fail(fmt::format("must be a non-negative integer, not {}", printable(value_->dump())));
+    if (!value_->is_number_unsigned())
+        fail(fmt::format("must be a non-negative integer, not {}",
+                         value_->is_number() ? value_->dump() : value_->type_name()));
     return value_->get<std::uint64_t>();
 }
 
@@ -132,7 +150,7 @@ std::uint64_t JsonReader::integerBetween(std::uint64_t lowest, std::uint64_t hig
 
 std::size_t JsonReader::index(std::size_t count, std::string_view target) const {
     const std::uint64_t value = integer();
-    if (value >= count) fail(fmt::format("refers to {} {}, but the file has only {} of them", target, value, count));
+    if (value >= count) fail(fmt::format("refers to {} {}, but there are only {} of them", target, value, count));
     return static_cast<std::size_t>(value);
 }
 
@@ -145,7 +163,7 @@ json JsonReader::numbers(std::size_t count) const {
 
 json JsonReader::numbersBetween(std::size_t count, double lowest, double highest) const {
     json result = numbers(count);
-    for (std::size_t i = 0; i < count; ++i) element(i).numberBetween(lowest, highest);
+    for (std::size_t i = 0; i < count; ++i) (void)element(i).numberBetween(lowest, highest);
     return result;
 }
 

@@ -15,7 +15,8 @@ class LoadContext;
 /// Parses text after bounding its nesting and its number of values, on which memory and stack depend.
 [[nodiscard]] nlohmann::json parseJson(std::string_view text, const LoadContext& context);
 
-/// A JSON value together with its pointer. Every function that finds another type than asked for throws Error naming it.
+/// A JSON value together with its pointer. Every function that finds another type than asked for throws Error naming
+/// it.
 class JsonReader {
 public:
     JsonReader(const nlohmann::json& value, std::string pointer, LoadContext& context)
@@ -35,7 +36,7 @@ public:
     [[nodiscard]] JsonReader element(std::size_t index) const;
     [[nodiscard]] std::size_t sizeOf(std::string_view key) const;
 
-    [[nodiscard]] std::string string() const;
+    [[nodiscard]] const std::string& string() const; ///< lives as long as the document
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] double number() const;
     [[nodiscard]] double numberBetween(double lowest, double highest) const;

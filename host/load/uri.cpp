@@ -89,7 +89,8 @@ Bytes decodeDataUri(std::string_view uri, const JsonReader& where) {
 }
 
 fs::path resolveUri(const std::string& uri, const fs::path& folder, const JsonReader& where) {
-    if (hasScheme(uri)) where.fail(fmt::format("'{}' is not a relative path; copy the file beside the scene", printable(uri)));
+    if (hasScheme(uri))
+        where.fail(fmt::format("'{}' is not a relative path; copy the file beside the scene", printable(uri)));
     const std::string text = decodePercent(uri, where);
     if (text.empty()) where.fail("is empty");
     if (text.find('\0') != std::string::npos) where.fail("contains a NUL character");
@@ -101,7 +102,8 @@ fs::path resolveUri(const std::string& uri, const fs::path& folder, const JsonRe
     const fs::path path = error ? fs::path() : fs::weakly_canonical(root / relative, error);
     if (error) where.fail(fmt::format("'{}' cannot be resolved: {}", printable(text), error.message()));
     if (!contains(root, path))
-        where.fail(fmt::format("'{}' leads out of the scene's folder; copy the file beside the scene", printable(text)));
+        where.fail(
+            fmt::format("'{}' leads out of the scene's folder; copy the file beside the scene", printable(text)));
     return path;
 }
 

@@ -14,8 +14,8 @@ class JsonReader;
 /// The bytes of "data:<type>;base64,<text>".
 [[nodiscard]] Bytes decodeDataUri(std::string_view uri, const JsonReader& where);
 
-/// The canonical path that a relative URI names. Refuses other schemes, absolute paths and whatever leads out of `folder`
-/// after percent-decoding and following links: a scene from elsewhere must not reach the user's other files.
+/// The canonical path that a relative URI names. Refuses other schemes, absolute paths and whatever leads out of
+/// `folder` after percent-decoding and following links: a scene from elsewhere must not reach the user's other files.
 [[nodiscard]] std::filesystem::path resolveUri(const std::string& uri, const std::filesystem::path& folder,
                                                const JsonReader& where);
 

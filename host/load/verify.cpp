@@ -47,7 +47,8 @@ void verifyAsset(const JsonReader& root) {
         version.fail(fmt::format("glTF {} is not supported; export as glTF 2.0", printable(version.string())));
     const std::optional<JsonReader> minVersion = root.at("asset").find("minVersion");
     if (minVersion && parseVersion(*minVersion) > std::pair(2, 0))
-        minVersion->fail(fmt::format("a reader of glTF {} is needed; this one reads 2.0", printable(minVersion->string())));
+        minVersion->fail(
+            fmt::format("a reader of glTF {} is needed; this one reads 2.0", printable(minVersion->string())));
 }
 
 void verifyExtensions(const JsonReader& root) {

@@ -1,5 +1,5 @@
-// Checks an untrusted glTF document and rewrites what is supported as a clean one: known members, known types, indices and
-// ranges that hold. tinygltf and everything after it sees the clean document only.
+// Checks an untrusted glTF document and rewrites what is supported as a clean one: known members, known types, indices
+// and ranges that hold. tinygltf and everything after it sees the clean document only.
 #pragma once
 
 #include "load/json_reader.h"

@@ -1,5 +1,5 @@
-// Buffer views and accessors: every element of every accessor lies in its buffer. Ranges are checked by subtracting from
-// what is known to be valid, so that no sum can overflow.
+// Buffer views and accessors: every element of every accessor lies in its buffer. Ranges are checked by subtracting
+// from what is known to be valid, so that no sum can overflow.
 #include "load/verify_parts.h"
 
 #include <fmt/format.h>
@@ -58,14 +58,15 @@ void verifyRange(const JsonReader& where, const JsonReader& view, const Layout& 
     const std::uint64_t stride = integerOr(view, "byteStride", layout.elementBytes);
     if (offset > length || layout.elementBytes > length - offset ||
         layout.count - 1 > (length - offset - layout.elementBytes) / stride)
-        where.fail(fmt::format("its {} elements of {} bytes from byte {} on do not fit into the {} bytes of {}", layout.count,
-                               layout.elementBytes, offset, length, view.pointer()));
+        where.fail(fmt::format("its {} elements of {} bytes from byte {} on do not fit into the {} bytes of {}",
+                               layout.count, layout.elementBytes, offset, length, view.pointer()));
     if (stride < layout.elementBytes)
-        where.fail(fmt::format("its elements of {} bytes overlap at the byteStride {} of {}", layout.elementBytes, stride,
-                               view.pointer()));
+        where.fail(fmt::format("its elements of {} bytes overlap at the byteStride {} of {}", layout.elementBytes,
+                               stride, view.pointer()));
     const bool isAligned = offset % layout.componentBytes == 0 && stride % layout.componentBytes == 0 &&
                            integerOr(view, "byteOffset", 0) % layout.componentBytes == 0;
-    if (!isAligned) where.fail(fmt::format("its data is not aligned to its component size, {} bytes", layout.componentBytes));
+    if (!isAligned)
+        where.fail(fmt::format("its data is not aligned to its component size, {} bytes", layout.componentBytes));
 }
 
 JsonReader viewOf(const JsonReader& where, const JsonReader& root) {
@@ -98,8 +99,8 @@ json verifyBufferView(const JsonReader& view, const JsonReader& root) {
     const std::uint64_t length = view.at("byteLength").integerBetween(1, kLargest);
     const std::uint64_t offset = integerOr(view, "byteOffset", 0);
     if (offset > available || length > available - offset)
-        view.fail(fmt::format("its {} bytes from byte {} on do not fit into the {} bytes of /buffers/{}", length, offset,
-                              available, buffer));
+        view.fail(fmt::format("its {} bytes from byte {} on do not fit into the {} bytes of /buffers/{}", length,
+                              offset, available, buffer));
     json result{{"buffer", buffer}, {"byteLength", length}, {"byteOffset", offset}};
     if (const std::optional<JsonReader> stride = view.find("byteStride")) {
         if (stride->integerBetween(4, 252) % 4 != 0) stride->fail("must be a multiple of 4");
@@ -121,7 +122,8 @@ json verifyAccessor(const JsonReader& accessor, const JsonReader& root) {
         verifyRange(accessor, viewOf(accessor, root), layout);
         result["bufferView"] = accessor.at("bufferView").integer();
     }
-    if (const std::optional<JsonReader> sparse = accessor.find("sparse")) result["sparse"] = verifySparse(*sparse, root, layout);
+    if (const std::optional<JsonReader> sparse = accessor.find("sparse"))
+        result["sparse"] = verifySparse(*sparse, root, layout);
     return result;
 }
 

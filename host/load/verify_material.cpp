@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <limits>
 
 namespace isolux {
@@ -22,7 +21,7 @@ void verifyTexture(const JsonReader& owner, std::string_view key, const JsonRead
     const std::optional<JsonReader> texture = owner.find(key);
     if (!texture) return;
     (void)texture->at("index").index(root.sizeOf("textures"), "textures");
-    texture->warn(fmt::format("{} is not supported; ignored", key));
+    texture->warn("textures are not supported; ignored");
 }
 
 std::optional<JsonReader> findExtension(const JsonReader& object, std::string_view name) {
@@ -58,7 +57,8 @@ void verifyTextures(const JsonReader& material, const JsonReader& root) {
         verifyTexture(*pbr, "baseColorTexture", root);
         verifyTexture(*pbr, "metallicRoughnessTexture", root);
     }
-    for (const std::string_view key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) verifyTexture(material, key, root);
+    for (const std::string_view key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
+        verifyTexture(material, key, root);
 }
 
 void verifyAlphaMode(const JsonReader& material) {
@@ -75,9 +75,11 @@ json verifyMaterial(const JsonReader& material, const JsonReader& root) {
     json result;
     copyName(material, result);
     result["pbrMetallicRoughness"] = {{"baseColorFactor", verifyBaseColor(material)}};
-    result["emissiveFactor"] = material.find("emissiveFactor") ? material.at("emissiveFactor").numbersBetween(3, 0.0, 1.0)
-                                                               : json{0.0, 0.0, 0.0};
-    result["extensions"] = {{"KHR_materials_emissive_strength", {{"emissiveStrength", verifyEmissiveStrength(material)}}}};
+    result["emissiveFactor"] = material.find("emissiveFactor")
+                                   ? material.at("emissiveFactor").numbersBetween(3, 0.0, 1.0)
+                                   : json{0.0, 0.0, 0.0};
+    result["extensions"] = {
+        {"KHR_materials_emissive_strength", {{"emissiveStrength", verifyEmissiveStrength(material)}}}};
     result["doubleSided"] = material.find("doubleSided") && material.at("doubleSided").boolean();
     warnUnlessLambertian(material);
     verifyTextures(material, root);

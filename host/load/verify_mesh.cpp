@@ -11,8 +11,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kTriangles = 4;
-constexpr std::array<std::string_view, 7> kModes = {"POINTS",         "LINES",        "LINE_LOOP", "LINE_STRIP", "TRIANGLES",
-                                                    "TRIANGLE_STRIP", "TRIANGLE_FAN"};
+constexpr std::array<std::string_view, 7> kModes = {"POINTS",    "LINES",          "LINE_LOOP",   "LINE_STRIP",
+                                                    "TRIANGLES", "TRIANGLE_STRIP", "TRIANGLE_FAN"};
 
 JsonReader accessorOf(const JsonReader& reference, const JsonReader& root) {
     return root.at("accessors").element(reference.index(root.sizeOf("accessors"), "accessors"));
@@ -52,7 +52,8 @@ json verifyAttributes(const JsonReader& attributes, const JsonReader& root) {
     for (const std::string_view name : {"POSITION", "NORMAL"}) {
         const std::optional<JsonReader> attribute = attributes.find(name);
         if (!attribute) continue;
-        if (accessorOf(*attribute, root).at("type").string() != "VEC3") attribute->fail("refers to an accessor that is not VEC3");
+        if (accessorOf(*attribute, root).at("type").string() != "VEC3")
+            attribute->fail("refers to an accessor that is not VEC3");
         result[std::string(name)] = attribute->integer();
     }
     return result;
@@ -67,7 +68,8 @@ json verifyPrimitive(const JsonReader& primitive, const JsonReader& root) {
         verifyTargets(primitive, root, vertexCount);
     }
     warnOfAttributes(attributes);
-    if (const std::optional<JsonReader> indices = primitive.find("indices")) result["indices"] = verifyIndices(*indices, root);
+    if (const std::optional<JsonReader> indices = primitive.find("indices"))
+        result["indices"] = verifyIndices(*indices, root);
     if (const std::optional<JsonReader> material = primitive.find("material"))
         result["material"] = material->index(root.sizeOf("materials"), "materials");
     const std::uint64_t mode = primitive.find("mode") ? primitive.at("mode").integerBetween(0, 6) : kTriangles;

@@ -1,4 +1,5 @@
 // Nodes, cameras and scenes: transforms, references, and that the nodes form trees.
+#include "load/context.h"
 #include "load/verify_parts.h"
 
 #include <fmt/format.h>
@@ -15,9 +16,15 @@ using nlohmann::json;
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 json verifyMatrix(const JsonReader& matrix) {
+    constexpr double kTolerance = 1e-6; // exporters round
     json result = matrix.numbers(16);
-    const bool isAffine = result[3] == 0.0 && result[7] == 0.0 && result[11] == 0.0 && result[15] == 1.0;
-    if (!isAffine) matrix.fail("is not affine: its last row (elements 3, 7, 11, 15) must be 0 0 0 1");
+    for (std::size_t column = 0; column < 4; ++column) {
+        json& last = result[4 * column + 3];
+        const double affine = column == 3 ? 1.0 : 0.0;
+        if (!(std::abs(last.get<double>() - affine) <= kTolerance))
+            matrix.fail("is not affine: its last row (elements 3, 7, 11, 15) must be 0 0 0 1");
+        last = affine;
+    }
     return result;
 }
 
@@ -66,10 +73,13 @@ json verifyPerspective(const JsonReader& perspective) {
     json result{{"yfov", yfov.number()}, {"znear", 1.0}};
     const double znear = perspective.find("znear") ? perspective.at("znear").number() : 0.0;
     const double zfar = perspective.find("zfar") ? perspective.at("zfar").number() : kHuge;
-    if (!(znear > 0.0 && zfar > znear)) perspective.warn("znear or zfar is missing or invalid; neither clips, so both are ignored");
+    if (!(znear > 0.0 && zfar > znear))
+        perspective.warn("znear or zfar is missing or invalid; neither clips, so both are ignored");
     if (const std::optional<JsonReader> aspect = perspective.find("aspectRatio")) {
-        if (aspect->number() > 0.0) result["aspectRatio"] = aspect->number();
-        else aspect->warn("is not positive; ignored");
+        if (aspect->number() > 0.0)
+            result["aspectRatio"] = aspect->number();
+        else
+            aspect->warn("is not positive; ignored");
     }
     return result;
 }
@@ -84,7 +94,8 @@ std::vector<std::string> findParents(const JsonReader& root, std::vector<std::si
             const JsonReader reference = node.at("children").element(i);
             const std::size_t child = reference.index(count, "nodes");
             if (!pointers[child].empty())
-                reference.fail(fmt::format("node {} already has a parent, by {}; a node has one parent", child, pointers[child]));
+                reference.fail(
+                    fmt::format("node {} already has a parent, by {}; a node has one parent", child, pointers[child]));
             pointers[child] = reference.pointer();
             parentOf[child] = parent;
         }
@@ -93,7 +104,8 @@ std::vector<std::string> findParents(const JsonReader& root, std::vector<std::si
 }
 
 /// Walks from each node towards its root; a walk that meets itself is a cycle. Every node is walked over once.
-void verifyNoCycles(const std::vector<std::size_t>& parentOf, const std::vector<std::string>& pointers, const JsonReader& root) {
+void verifyNoCycles(const std::vector<std::size_t>& parentOf, const std::vector<std::string>& pointers,
+                    const JsonReader& root) {
     std::vector<std::size_t> walkOf(parentOf.size(), 0);
     for (std::size_t start = 0; start < parentOf.size(); ++start) {
         std::size_t node = start;
@@ -102,7 +114,8 @@ void verifyNoCycles(const std::vector<std::size_t>& parentOf, const std::vector<
             node = parentOf[node];
         }
         if (node < parentOf.size() && walkOf[node] == start + 1)
-            root.context().fail(pointers[node], fmt::format("node {} is its own ancestor: the nodes form a cycle", node));
+            root.context().fail(pointers[node],
+                                fmt::format("node {} is its own ancestor: the nodes form a cycle", node));
     }
 }
 
@@ -112,7 +125,8 @@ json verifyNode(const JsonReader& node, const JsonReader& root) {
     json result = json::object();
     copyName(node, result);
     verifyTransform(node, result);
-    if (const std::optional<JsonReader> mesh = node.find("mesh")) result["mesh"] = mesh->index(root.sizeOf("meshes"), "meshes");
+    if (const std::optional<JsonReader> mesh = node.find("mesh"))
+        result["mesh"] = mesh->index(root.sizeOf("meshes"), "meshes");
     if (const std::optional<JsonReader> camera = node.find("camera"))
         result["camera"] = camera->index(root.sizeOf("cameras"), "cameras");
     for (std::size_t i = 0; i < node.sizeOf("children"); ++i)
@@ -149,14 +163,16 @@ void verifyHierarchy(const JsonReader& root) {
     std::vector<std::size_t> parentOf(nodeCount, nodeCount);
     const std::vector<std::string> pointers = findParents(root, parentOf);
     verifyNoCycles(parentOf, pointers, root);
+    std::vector<std::size_t> listedBy(nodeCount, 0);
     for (std::size_t s = 0; s < root.sizeOf("scenes"); ++s) {
         const JsonReader scene = root.at("scenes").element(s);
-        std::vector<char> isListed(nodeCount, 0);
         for (std::size_t i = 0; i < scene.sizeOf("nodes"); ++i) {
             const JsonReader reference = scene.at("nodes").element(i);
             const std::size_t node = reference.index(nodeCount, "nodes");
-            if (!pointers[node].empty()) reference.fail(fmt::format("node {} is no root: it is a child by {}", node, pointers[node]));
-            if (isListed[node]++ != 0) reference.fail(fmt::format("node {} is listed twice", node));
+            if (!pointers[node].empty())
+                reference.fail(fmt::format("node {} is no root: it is a child by {}", node, pointers[node]));
+            if (listedBy[node] == s + 1) reference.fail(fmt::format("node {} is listed twice", node));
+            listedBy[node] = s + 1;
         }
     }
 }

@@ -1,14 +1,13 @@
 // References among parts of the document that are not supported yet: wrong ones are errors all the same.
 #include "load/verify_parts.h"
 
-#include <array>
-
 namespace isolux {
 namespace {
 
 /// `owner`'s member `key`, if present, is an index into the document's array `target`.
 void verifyReference(const JsonReader& owner, std::string_view key, const JsonReader& root, std::string_view target) {
-    if (const std::optional<JsonReader> reference = owner.find(key)) (void)reference->index(root.sizeOf(target), target);
+    if (const std::optional<JsonReader> reference = owner.find(key))
+        (void)reference->index(root.sizeOf(target), target);
 }
 
 void verifyTextureSources(const JsonReader& root) {

@@ -13,8 +13,9 @@ namespace isolux {
 template <typename Real> class CameraRays {
 public:
     CameraRays(const Camera& camera, const RenderSettings& settings)
-        : position_(camera.position), worldFromCamera_(camera.worldFromCamera), width_(static_cast<Real>(settings.width)),
-          height_(static_cast<Real>(settings.height)), tanHalfFov_(static_cast<Real>(std::tan(camera.yfov / 2))) {}
+        : position_(camera.position), worldFromCamera_(camera.worldFromCamera),
+          width_(static_cast<Real>(settings.width)), height_(static_cast<Real>(settings.height)),
+          tanHalfFov_(static_cast<Real>(std::tan(camera.yfov / 2))) {}
 
     /// The ray through the point (u, v) of pixel (x, y), y counted from the top.
     [[nodiscard]] Ray<Real> through(std::uint32_t x, std::uint32_t y, Real u, Real v) const {

@@ -1,16 +1,16 @@
 // How the reference renders: choices that must not change the expectation of the image.
 #pragma once
 
+#include "scene/render_settings.h"
+
 namespace isolux {
 
 /// The type of every quantity along a path. Sums over samples are double in both.
 enum class Precision { doublePrecision, singlePrecision };
 
-/// How rays find primitives: through the BVH, or by asking every primitive (which checks the BVH). Same hits, bit by bit.
+/// How rays find primitives: through the BVH, or by asking every primitive (which checks the BVH). Same hits, bit by
+/// bit.
 enum class Intersector { bvh, bruteForce };
-
-/// Whether PixelStatistics::pathSignature is filled.
-enum class PathSignatures { off, on };
 
 struct ReferenceOptions {
     Precision precision = Precision::doublePrecision;

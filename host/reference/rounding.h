@@ -16,8 +16,8 @@ template <typename Real> [[nodiscard]] constexpr Real roundingBound(int rounding
     return accumulated / (1 - accumulated);
 }
 
-/// `point`, known to +-`error` per axis, moved along the unit `normal` until it is on that side of every plane with this
-/// normal through the box of uncertainty (Pharr, Jakob and Humphreys 2023, 6.8.6).
+/// `point`, known to +-`error` per axis, moved along the unit `normal` until it is on that side of every plane with
+/// this normal through the box of uncertainty (Pharr, Jakob and Humphreys 2023, 6.8.6).
 template <typename Real>
 [[nodiscard]] Vec3<Real> offsetPoint(const Vec3<Real>& point, const Vec3<Real>& error, const Vec3<Real>& normal) {
     const Vec3<Real> offset = glm::dot(glm::abs(normal), error) * normal;

@@ -3,6 +3,7 @@
 
 #include "core/math.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isolux {
@@ -21,7 +22,8 @@ template <typename Real> [[nodiscard]] Frame<Real> frameAbout(const Vec3<Real>& 
     const Real sigma = n.z < Real(-0.38) ? Real(-1) : Real(1);
     const Real a = -1 / (sigma + n.z);
     const Real b = n.x * n.y * a;
-    return {Vec3<Real>(1 + sigma * n.x * n.x * a, sigma * b, -sigma * n.x), Vec3<Real>(b, sigma + n.y * n.y * a, -n.y), n};
+    return {Vec3<Real>(1 + sigma * n.x * n.x * a, sigma * b, -sigma * n.x), Vec3<Real>(b, sigma + n.y * n.y * a, -n.y),
+            n};
 }
 
 /// Cosine-weighted direction about +z: Shirley and Chiu 1997 (concentric map), lifted to the hemisphere (Malley).
@@ -40,15 +42,9 @@ template <typename Real> [[nodiscard]] Vec3<Real> sampleCosineHemisphere(Real u,
 
 /// Uniform barycentric coordinates (Heitz 2019, "A low-distortion map between triangle and square").
 template <typename Real> [[nodiscard]] Vec3<Real> sampleTriangle(Real u, Real v) {
-    Real b0 = u;
-    Real b1 = v;
-    if (v > u) {
-        b0 = u / 2;
-        b1 = v - b0;
-    } else {
-        b1 = v / 2;
-        b0 = u - b1;
-    }
+    const Real half = std::min(u, v) / 2;
+    const Real b0 = v > u ? half : u - half;
+    const Real b1 = v > u ? v - half : half;
     return {b0, b1, 1 - b0 - b1};
 }
 

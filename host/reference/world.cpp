@@ -50,15 +50,15 @@ template <typename Real>
 void addTriangle(World<Real>& world, const Placement& placement, const std::array<std::uint32_t, 3>& vertices) {
     WorldTriangle<Real> triangle;
     triangle.material = placement.mesh.material;
-    std::array<Vec3d, 3> positions;
+    std::array<Vec3d, 3> kept; // everything follows from the corners as they are kept, or rays would leak
     Box3d bounds;
     for (std::size_t i = 0; i < 3; ++i) {
-        positions[i] = placement.position(vertices[i]);
-        bounds.extend(positions[i]);
-        triangle.positions[i] = Vec3<Real>(positions[i]);
+        triangle.positions[i] = Vec3<Real>(placement.position(vertices[i]));
         triangle.normals[i] = Vec3<Real>(placement.normal(vertices[i]));
+        kept[i] = Vec3d(triangle.positions[i]);
+        bounds.extend(kept[i]);
     }
-    const Vec3d cross = glm::cross(positions[1] - positions[0], positions[2] - positions[0]);
+    const Vec3d cross = glm::cross(kept[1] - kept[0], kept[2] - kept[0]);
     const double length = glm::length(cross);
     if (length > 0.0 && std::isfinite(length)) {
         triangle.ng = Vec3<Real>(cross * (placement.frontSign / length));
@@ -69,9 +69,10 @@ void addTriangle(World<Real>& world, const Placement& placement, const std::arra
 }
 
 template <typename Real> void addSphere(World<Real>& world, const Sphere& sphere) {
-    const Vec3d radius(sphere.radius);
     world.spheres.push_back({Vec3<Real>(sphere.center), static_cast<Real>(sphere.radius), sphere.material});
-    world.boxes.push_back(roundOutward({sphere.center - radius, sphere.center + radius}));
+    const Vec3d center(world.spheres.back().center);
+    const Vec3d radius(static_cast<double>(world.spheres.back().radius));
+    world.boxes.push_back(roundOutward({center - radius, center + radius}));
 }
 
 } // namespace

@@ -83,9 +83,7 @@ double studentUpperQuantile(double tail, double degrees) {
     return 0.5 * (low + high);
 }
 
-Interval around(double estimate, double halfWidth) {
-    return {estimate - halfWidth, estimate, estimate + halfWidth};
-}
+Interval around(double estimate, double halfWidth) { return {estimate - halfWidth, estimate, estimate + halfWidth}; }
 
 } // namespace
 

@@ -11,6 +11,9 @@ inline constexpr std::uint32_t kUnlimitedDepth = std::numeric_limits<std::uint32
 /// Roulette never lets a path live with a higher probability than this, so that every path ends: 1 - 2^-10.
 inline constexpr double kMaxSurvival = 1.0 - 1.0 / 1024.0;
 
+/// Whether PixelStatistics::pathSignature is filled (README.md, path signature).
+enum class PathSignatures { off, on };
+
 struct RenderSettings {
     std::uint32_t width = 512;
     std::uint32_t height = 384;

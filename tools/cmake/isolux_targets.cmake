@@ -5,6 +5,10 @@ target_compile_options(isolux_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   # Both renderers define results to the last bit of each operation; the compiler must not fuse them.
   -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 warns of overlapping copies inside std::string's operator+ where there are none (GCC bug 105651).
+  target_compile_options(isolux_options INTERFACE -Wno-restrict)
+endif()
 if(ISOLUX_WARNINGS_AS_ERRORS)
   target_compile_options(isolux_options INTERFACE -Werror)
 endif()

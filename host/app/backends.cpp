@@ -1,0 +1,106 @@
+#include "app/backends.h"
+
+#include "core/log.h"
+#include "reference/reference.h"
+#include "render/path_renderer.h"
+
+#include <chrono>
+
+namespace isolux {
+namespace {
+
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Stores the time a scope took, however it is left.
+class ScopedTimer {
+public:
+    explicit ScopedTimer(double& target) : target_(target) {}
+    ~ScopedTimer() { target_ = watch_.seconds(); }
+    ScopedTimer(const ScopedTimer&) = delete;
+    ScopedTimer& operator=(const ScopedTimer&) = delete;
+
+private:
+    double& target_;
+    Stopwatch watch_;
+};
+
+void addStatistics(RunReport& report, const RenderStatistics& statistics) {
+    report.timings.build = statistics.packSeconds;
+    report.timings.upload = statistics.uploadSeconds;
+    report.timings.compile = statistics.compileSeconds;
+    report.timings.device = statistics.deviceSeconds;
+    report.dispatchCount = statistics.dispatchCount;
+    report.longestDispatch = statistics.longestDispatchSeconds;
+}
+
+void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
+                    const ProgressCallback& progress) {
+    const Device device(options.device);
+    report.deviceName = device.description().name;
+    report.driverName = device.description().driverName;
+    report.driverVersion = device.description().driverVersion;
+    spdlog::debug("device {}: {}", device.description().name, device.description().driverVersion);
+    RenderOptions renderOptions;
+    renderOptions.signatures = options.signatures;
+    PathRenderer renderer(device, run.scene, run.settings, renderOptions);
+    try {
+        const ScopedTimer timer(report.timings.render);
+        renderer.render(film, progress);
+    } catch (...) {
+        addStatistics(report, renderer.statistics());
+        throw;
+    }
+    addStatistics(report, renderer.statistics());
+    report.validationMessages = device.validationMessages();
+}
+
+void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
+                       const ProgressCallback& progress) {
+    report.deviceName = options.precision == Precision::doublePrecision ? "CPU, double precision" : "CPU, single precision";
+    const ScopedTimer timer(report.timings.render);
+    film = renderReference(run.scene, run.settings, {options.precision, Intersector::bvh, options.signatures}, progress);
+}
+
+} // namespace
+
+SceneRun openScene(const SceneOptions& options, std::uint32_t defaultWidth) {
+    SceneRun run;
+    const ScopedTimer timer(run.loadSeconds);
+    run.scene = loadScene(options);
+    run.settings = settingsFor(run.scene, options, defaultWidth);
+    return run;
+}
+
+RunReport describeRun(const SceneRun& run, const SceneOptions& options) {
+    RunReport report;
+    report.scene = options.file;
+    report.sceneHash = run.scene.contentHash;
+    report.width = run.settings.width;
+    report.height = run.settings.height;
+    report.firstSample = run.settings.firstSample;
+    report.seed = run.settings.seed;
+    if (run.settings.maxDepth != kUnlimitedDepth) report.maxDepth = run.settings.maxDepth;
+    report.timings.load = run.loadSeconds;
+    return report;
+}
+
+void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
+                const ProgressCallback& progress) {
+    if (options.backend == Backend::vulkan) {
+        report.backend = "vulkan";
+        renderOnDevice(film, report, run, options, progress);
+    } else {
+        report.backend = "reference";
+        renderOnProcessor(film, report, run, options, progress);
+    }
+}
+
+} // namespace isolux

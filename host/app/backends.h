@@ -1,0 +1,37 @@
+// Loading a scene and rendering it with either backend, with the report filled in on the way.
+#pragma once
+
+#include "app/scene_options.h"
+#include "core/progress.h"
+#include "film/film.h"
+#include "reference/options.h"
+#include "report/run_report.h"
+
+namespace isolux {
+
+enum class Backend { vulkan, reference };
+
+struct BackendOptions {
+    Backend backend = Backend::vulkan;
+    Precision precision = Precision::doublePrecision;
+    DeviceOptions device;
+    PathSignatures signatures = PathSignatures::off;
+};
+
+/// A loaded scene with what is to be rendered of it.
+struct SceneRun {
+    Scene scene;
+    RenderSettings settings;
+    double loadSeconds = 0.0;
+};
+
+[[nodiscard]] SceneRun openScene(const SceneOptions& options, std::uint32_t defaultWidth);
+
+/// A report that knows the scene and the settings.
+[[nodiscard]] RunReport describeRun(const SceneRun& run, const SceneOptions& options);
+
+/// Renders into `film` and adds device and timings to `report`. If it throws or is interrupted both tell how far it got.
+void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
+                const ProgressCallback& progress);
+
+} // namespace isolux

@@ -1,0 +1,71 @@
+#include "app/output.h"
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/platform.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace isolux {
+namespace {
+
+Metadata metadataOf(const RunReport& report) {
+    return {{"samplesPerPixel", unsignedMetadata(report.samplesPerPixel)},
+            {"renderTimeSeconds", report.timings.render},
+            {"isolux/version", std::string(ISOLUX_VERSION)},
+            {"isolux/seed", unsignedMetadata(report.seed)},
+            {"isolux/sampleFirst", unsignedMetadata(report.firstSample)},
+            {"isolux/sampleCount", unsignedMetadata(report.samplesPerPixel)},
+            {"isolux/sceneHash", report.sceneHash},
+            {"isolux/device", report.deviceName},
+            {"isolux/driver", fmt::format("{} {}", report.driverName, report.driverVersion)},
+            {"isolux/options", fmt::format("--backend {} --width {} --height {}{}", report.backend, report.width, report.height,
+                                           report.maxDepth ? fmt::format(" --max-depth {}", *report.maxDepth) : "")}};
+}
+
+/// Whether the file at `path` may hold more samples than `samples`: it says so, or says nothing of samples.
+bool mayHoldMore(const std::filesystem::path& path, std::uint64_t samples) {
+    if (!std::filesystem::exists(path)) return false;
+    try {
+        const auto held = metadataUnsigned(readImage(path).metadata, "isolux/sampleCount");
+        return !held || *held > samples;
+    } catch (const Error&) {
+        return true; // not an image of ours: not ours to replace half-done
+    }
+}
+
+std::filesystem::path partialName(const std::filesystem::path& path) {
+    return path.parent_path() / (path.stem().string() + ".partial" + path.extension().string());
+}
+
+} // namespace
+
+void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report, Completion completion) {
+    const Image image = imageFromFilm(film, metadataOf(report));
+    for (const std::filesystem::path path : paths) {
+        const bool beside = completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount());
+        const std::filesystem::path target = beside ? partialName(path) : path;
+        writeImage(target, image);
+        if (completion == Completion::interrupted)
+            spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(), film.maxSampleCount(), target.string());
+    }
+}
+
+void writeText(const std::string& path, const std::string& text) {
+    const std::string temporary = fmt::format("{}.{}.tmp", path, processId());
+    {
+        std::ofstream file(temporary, std::ios::binary);
+        file << text;
+        if (!file.flush()) {
+            std::error_code ignored;
+            std::filesystem::remove(temporary, ignored);
+            throwFailure(path, "cannot write");
+        }
+    }
+    replaceFile(temporary, path);
+}
+
+} // namespace isolux

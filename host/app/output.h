@@ -1,0 +1,22 @@
+// What a render leaves on disk: images with metadata, and reports.
+#pragma once
+
+#include "film/film.h"
+#include "film/image.h"
+#include "report/run_report.h"
+
+#include <string>
+#include <vector>
+
+namespace isolux {
+
+enum class Completion { whole, interrupted };
+
+/// Writes the film to every path. An interrupted render replaces a file only if that holds no more samples; otherwise
+/// it goes beside it, with ".partial" in its name.
+void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report, Completion completion);
+
+/// Writes a text file to a temporary name, flushed and renamed. Throws Error.
+void writeText(const std::string& path, const std::string& text);
+
+} // namespace isolux

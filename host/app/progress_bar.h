@@ -1,0 +1,37 @@
+// Progress on standard error: a bar on a terminal, a line every few seconds in a log; and the answer to Ctrl-C.
+#pragma once
+
+#include "core/progress.h"
+
+#include <chrono>
+#include <string>
+
+namespace isolux {
+
+enum class ProgressDisplay { shown, hidden };
+
+class ProgressBar {
+public:
+    ProgressBar(std::string label, ProgressDisplay display);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// For renderers: draws, and says `no` once the user has asked to stop.
+    [[nodiscard]] ProgressCallback callback();
+    [[nodiscard]] double elapsedSeconds() const;
+
+private:
+    void update(double fraction);
+    [[nodiscard]] std::string line(double fraction) const;
+
+    using Clock = std::chrono::steady_clock;
+    std::string label_;
+    ProgressDisplay display_;
+    bool terminal_;
+    bool drawn_ = false;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point last_ = start_;
+};
+
+} // namespace isolux

@@ -1,0 +1,43 @@
+// The options that say what to render and on which device, shared by the commands that render.
+#pragma once
+
+#include "gpu/device.h"
+#include "load/gltf.h"
+#include "scene/render_settings.h"
+
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace isolux {
+
+struct SceneOptions {
+    std::string file;
+    std::optional<std::uint32_t> width;
+    std::optional<std::uint32_t> height;
+    std::optional<std::uint32_t> maxDepth;
+    std::uint32_t samples = 64;
+    std::uint32_t firstSample = 0;
+    std::uint64_t seed = 0;
+    std::string device;
+    bool validation = false;
+    bool quiet = false;
+    bool verbose = false;
+};
+
+/// Adds SCENE, --spp, --width, --seed and the others, with `options`' values as defaults.
+void addSceneOptions(CLI::App& command, SceneOptions& options);
+
+/// Loads the scene and logs its warnings.
+[[nodiscard]] Scene loadScene(const SceneOptions& options);
+
+/// Settings for the scene's first camera: a size that is not given follows from the other by the camera's aspect ratio,
+/// `defaultWidth` if neither is. Throws Error if the image or the range of samples is empty or too large.
+[[nodiscard]] RenderSettings settingsFor(const Scene& scene, const SceneOptions& options, std::uint32_t defaultWidth);
+
+[[nodiscard]] DeviceOptions deviceOptions(const SceneOptions& options);
+
+} // namespace isolux

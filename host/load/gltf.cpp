@@ -1,0 +1,106 @@
+#include "load/gltf.h"
+
+#include "load/container.h"
+#include "load/context.h"
+#include "load/node_walker.h"
+#include "load/verify.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+namespace isolux {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Light tables hold at most 2^28 lights; vertices are bounded so that a walk over all of them ends in seconds.
+constexpr std::uint64_t kMostPrimitives = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMostVertices = std::uint64_t{1} << 30;
+/// What the lengths in the header of a .glb can express.
+constexpr std::uintmax_t kLargestFile = 0xFFFFFFFFu;
+/// Squares of lengths must stay within single precision.
+constexpr double kFarthest = 1e18;
+
+Material toMaterial(const tinygltf::Material& source, std::size_t index) {
+    const auto& color = source.pbrMetallicRoughness.baseColorFactor;
+    const auto& emission = source.emissiveFactor;
+    const double strength =
+        source.extensions.at("KHR_materials_emissive_strength").Get("emissiveStrength").GetNumberAsDouble();
+    Material material;
+    material.name = source.name.empty() ? fmt::format("material {}", index) : source.name;
+    material.baseColor = Vec3d(color[0], color[1], color[2]);
+    material.emission = strength * Vec3d(emission[0], emission[1], emission[2]);
+    material.doubleSided = source.doubleSided;
+    return material;
+}
+
+/// The roots of the default scene; else of the first one; else all nodes without a parent.
+std::vector<int> rootNodes(const tinygltf::Model& model) {
+    if (!model.scenes.empty()) return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
+    std::vector<char> isChild(model.nodes.size(), 0);
+    for (const tinygltf::Node& node : model.nodes)
+        for (const int child : node.children) isChild[static_cast<std::size_t>(child)] = 1;
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i)
+        if (!isChild[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+}
+
+std::string sceneName(const tinygltf::Model& model, const fs::path& file) {
+    const std::size_t index = static_cast<std::size_t>(std::max(model.defaultScene, 0));
+    const bool hasName = index < model.scenes.size() && !model.scenes[index].name.empty();
+    return hasName ? model.scenes[index].name : file.stem().string();
+}
+
+void checkSize(const Scene& scene, const LoadContext& context) {
+    std::uint64_t vertices = 0;
+    for (const Instance& instance : scene.instances) vertices += scene.meshes[instance.mesh].positions.size();
+    const std::uint64_t primitives = primitiveCount(scene);
+    if (primitives > kMostPrimitives || vertices > kMostVertices)
+        context.fail(
+            "", fmt::format("its instances amount to {} primitives and {} vertices; at most {} and {} are supported",
+                            primitives, vertices, kMostPrimitives, kMostVertices));
+    const Box3d bounds = worldBounds(scene);
+    const double farthest =
+        bounds.empty() ? 0.0 : maxComponent(glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));
+    if (!(farthest <= kFarthest))
+        context.fail("", fmt::format("it reaches {:g} units from the origin; scale it down to at most {:g}", farthest,
+                                     kFarthest));
+}
+
+Scene buildScene(const Asset& asset, const fs::path& file, LoadContext& context) {
+    Scene scene;
+    scene.name = sceneName(asset.model, file);
+    for (std::size_t i = 0; i < asset.model.materials.size(); ++i)
+        scene.materials.push_back(toMaterial(asset.model.materials[i], i));
+    walkNodes(asset, rootNodes(asset.model), context, scene);
+    checkSize(scene, context);
+    if (primitiveCount(scene) == 0) context.warn("", "the scene has nothing to render");
+    if (scene.cameras.empty()) scene.cameras.push_back(frameScene(scene));
+    return scene;
+}
+
+} // namespace
+
+Scene loadScene(const fs::path& file) {
+    LoadContext context(file.string());
+    const Bytes bytes = readRegularFile(file, {context, "", kLargestFile});
+    ContentHash hash;
+    hash.add(bytes);
+    const Container container = splitContainer(bytes, context);
+    const nlohmann::json document = parseJson(container.json, context);
+    const JsonReader root(document, "", context);
+    const nlohmann::json verified = verifyDocument(root);
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    Asset asset;
+    asset.buffers = readBuffers(root, {folder, container.binary}, hash);
+    asset.model = parseModel(verified, context);
+    Scene scene = buildScene(asset, file, context);
+    scene.warnings = context.warnings();
+    scene.contentHash = hash.hexadecimal();
+    validate(scene);
+    return scene;
+}
+
+} // namespace isolux

@@ -1,0 +1,11 @@
+// Walks the node trees of a scene: instances, exact spheres and cameras in the world.
+#pragma once
+
+#include "load/mesh_builder.h"
+
+namespace isolux {
+
+/// Fills the scene from the given root nodes, in depth-first order.
+void walkNodes(const Asset& asset, const std::vector<int>& roots, LoadContext& context, Scene& scene);
+
+} // namespace isolux

@@ -1,0 +1,213 @@
+#include "pack/packed_scene.h"
+
+#include "accel/wide_bvh.h"
+#include "core/error.h"
+#include "scene/lights.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace isolux {
+namespace {
+
+float asFloat(std::uint32_t bits) { return std::bit_cast<float>(bits); }
+
+glm::vec4 word(const Vec3f& xyz, float w) { return {xyz, w}; }
+
+/// The primitives in scene order with the boxes the BVH is built over.
+struct Primitives {
+    std::vector<shared::PrimitiveRecord> records;
+    std::vector<shared::NormalRecord> normals;
+    std::vector<Box3f> boxes;
+};
+
+DeviceSpace chooseSpace(const Box3d& bounds) {
+    DeviceSpace space;
+    if (bounds.empty()) return space;
+    space.center = bounds.center();
+    const double halfExtent = 0.5 * maxComponent(bounds.extent());
+    if (halfExtent > 0.0) space.scale = std::exp2(-std::ceil(std::log2(halfExtent)));
+    return space;
+}
+
+Vec3d transformPoint(const Mat4d& matrix, const Vec3f& point) { return Vec3d(matrix * glm::dvec4(Vec3d(point), 1.0)); }
+
+/// Cofactors of the upper 3x3 matrix: the inverse transpose up to a factor, and finite for singular matrices too.
+Mat3d normalMatrix(const Mat4d& m) {
+    const Vec3d x(m[0]);
+    const Vec3d y(m[1]);
+    const Vec3d z(m[2]);
+    return {glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
+}
+
+Vec3f unitOrZero(const Vec3d& v) {
+    const double size = glm::length(v);
+    return size > 0.0 ? Vec3f(v / size) : Vec3f(0.0f);
+}
+
+class Packer {
+public:
+    explicit Packer(const Scene& scene) : scene_(scene), lights_(buildLightTable(scene)) {
+        packed_.space = chooseSpace(worldBounds(scene));
+    }
+
+    PackedScene pack() {
+        const std::size_t count = primitiveCount(scene_);
+        if (count >= WideChild::kMaxFirst)
+            throwBadInput(scene_.name, fmt::format("{} primitives are more than the {} this version can index", count,
+                                                   WideChild::kMaxFirst - 1));
+        for (const Instance& instance : scene_.instances) addInstance(instance);
+        for (const Sphere& sphere : scene_.spheres) addSphere(sphere);
+        const WideBvh wide = buildWideBvh(buildBvh(primitives_.boxes));
+        addNodes(wide);
+        orderByLeaves(wide.primitives);
+        addTables(wide.primitives);
+        return std::move(packed_);
+    }
+
+private:
+    void addInstance(const Instance& instance) {
+        const Mesh& mesh = scene_.meshes[instance.mesh];
+        const Mat3d normalFromObject = normalMatrix(instance.worldFromObject);
+        const bool mirrored = glm::determinant(Mat3d(instance.worldFromObject)) < 0.0;
+        std::vector<Vec3f> positions(mesh.positions.size());
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            positions[i] = Vec3f(packed_.space.fromWorld(transformPoint(instance.worldFromObject, mesh.positions[i])));
+        for (auto triangle : mesh.triangles) {
+            // A mirrored instance shows its front where the vertices run clockwise; turned round, they do not.
+            if (mirrored) std::swap(triangle[1], triangle[2]);
+            addTriangle({positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]}, mesh.material);
+            shared::NormalRecord normals{};
+            if (!mesh.normals.empty()) {
+                normals.n0 = word(unitOrZero(normalFromObject * Vec3d(mesh.normals[triangle[0]])), 0.0f);
+                normals.n1 = word(unitOrZero(normalFromObject * Vec3d(mesh.normals[triangle[1]])), 0.0f);
+                normals.n2 = word(unitOrZero(normalFromObject * Vec3d(mesh.normals[triangle[2]])), 0.0f);
+                smooth_ = true;
+            }
+            primitives_.normals.push_back(normals);
+        }
+    }
+
+    void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
+        const auto id = static_cast<std::uint32_t>(primitives_.records.size());
+        primitives_.records.push_back({word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])),
+                                       word(p[2], asFloat(id))});
+        Box3f box;
+        for (const Vec3f& vertex : p) box.extend(vertex);
+        primitives_.boxes.push_back(box);
+    }
+
+    void addSphere(const Sphere& sphere) {
+        const auto id = static_cast<std::uint32_t>(primitives_.records.size());
+        const Vec3f center(packed_.space.fromWorld(sphere.center));
+        const auto radius = static_cast<float>(sphere.radius * packed_.space.scale);
+        primitives_.records.push_back({word(center, asFloat(sphere.material)),
+                                       word({radius, 0.0f, 0.0f}, asFloat(lights_.lightOf[id])),
+                                       word(Vec3f(0.0f), asFloat(id | shared::kSphereBit))});
+        primitives_.normals.emplace_back();
+        Box3f box;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.lower[axis] = std::nextafter(center[axis] - radius, -std::numeric_limits<float>::infinity());
+            box.upper[axis] = std::nextafter(center[axis] + radius, std::numeric_limits<float>::infinity());
+        }
+        primitives_.boxes.push_back(box);
+    }
+
+    void addNodes(const WideBvh& wide) {
+        packed_.stackBound = wide.stackBound;
+        packed_.nodes.reserve(wide.nodes.size());
+        const auto pack4 = [](const std::array<std::uint8_t, 4>& q) {
+            return std::uint32_t{q[0]} | std::uint32_t{q[1]} << 8 | std::uint32_t{q[2]} << 16 | std::uint32_t{q[3]} << 24;
+        };
+        for (const WideNode& node : wide.nodes) {
+            std::uint32_t exponents = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                exponents |= static_cast<std::uint32_t>(node.exponent[axis] + 127) << (8 * axis);
+            packed_.nodes.push_back(
+                {word(node.origin, asFloat(exponents)),
+                 {pack4(node.lower[0]), pack4(node.lower[1]), pack4(node.lower[2]), pack4(node.upper[0])},
+                 {pack4(node.upper[1]), pack4(node.upper[2]), 0, 0},
+                 {node.children[0].bits(), node.children[1].bits(), node.children[2].bits(), node.children[3].bits()}});
+        }
+    }
+
+    void orderByLeaves(const std::vector<std::uint32_t>& order) {
+        packed_.primitives.reserve(order.size());
+        for (const std::uint32_t id : order) packed_.primitives.push_back(primitives_.records[id]);
+        if (!smooth_) return;
+        packed_.normals.reserve(order.size());
+        for (const std::uint32_t id : order) packed_.normals.push_back(primitives_.normals[id]);
+    }
+
+    void addTables(const std::vector<std::uint32_t>& order) {
+        packed_.materialCount = static_cast<std::uint32_t>(scene_.materials.size());
+        for (const Material& material : scene_.materials)
+            append(shared::MaterialRecord{word(Vec3f(material.baseColor), 0.0f), emissionOf(material)});
+        packed_.lightCount = static_cast<std::uint32_t>(lights_.primitives.size());
+        packed_.lightOffset = static_cast<std::uint32_t>(packed_.tables.size());
+        std::vector<std::uint32_t> indexOfId(order.size());
+        for (std::uint32_t i = 0; i < order.size(); ++i) indexOfId[order[i]] = i;
+        for (std::uint32_t light = 0; light < packed_.lightCount; ++light) append(lightRecord(light, indexOfId));
+        packed_.lightBits = lights_.choice.bits;
+        packed_.binOffset = static_cast<std::uint32_t>(packed_.tables.size());
+        for (const AliasTable::Bin& bin : lights_.choice.bins)
+            append(shared::LightBinRecord{{bin.threshold, bin.alias, 0, 0}});
+    }
+
+    shared::LightRecord lightRecord(std::uint32_t light, const std::vector<std::uint32_t>& indexOfId) const {
+        const std::uint32_t id = lights_.primitives[light];
+        const shared::PrimitiveRecord& primitive = primitives_.records[id];
+        const bool sphere = (std::bit_cast<std::uint32_t>(primitive.p2Id.w) & shared::kSphereBit) != 0;
+        const Vec3d p0(primitive.p0Material);
+        const Vec3d p1(primitive.p1Light);
+        const Vec3d p2(primitive.p2Id);
+        const double area = sphere ? 0.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
+        const Material& material = scene_.materials[std::bit_cast<std::uint32_t>(primitive.p0Material.w)];
+        return {word(Vec3f(p0), asFloat(indexOfId[id])),
+                word(Vec3f(p1), static_cast<float>(lights_.choice.pdf[light])),
+                word(Vec3f(p2), static_cast<float>(area)), emissionOf(material)};
+    }
+
+    static glm::vec4 emissionOf(const Material& material) {
+        return word(Vec3f(material.emission), material.doubleSided ? 1.0f : 0.0f);
+    }
+
+    template <typename Record> void append(const Record& record) {
+        const std::size_t first = packed_.tables.size();
+        packed_.tables.resize(first + sizeof(Record) / sizeof(glm::uvec4));
+        std::memcpy(&packed_.tables[first], &record, sizeof(Record));
+    }
+
+    const Scene& scene_;
+    LightTable lights_;
+    Primitives primitives_;
+    bool smooth_ = false;
+    PackedScene packed_;
+};
+
+} // namespace
+
+PackedScene packScene(const Scene& scene) { return Packer(scene).pack(); }
+
+shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene, const RenderSettings& settings) {
+    const Camera& camera = scene.cameras.at(settings.camera);
+    const double tangent = std::tan(0.5 * camera.yfov);
+    const double aspect = static_cast<double>(settings.width) / static_cast<double>(settings.height);
+    shared::RenderParameters parameters{};
+    parameters.cameraPosition = word(Vec3f(packed.space.fromWorld(camera.position)), 0.0f);
+    parameters.cameraRight = word(Vec3f(camera.worldFromCamera[0] * (tangent * aspect)), 0.0f);
+    parameters.cameraUp = word(Vec3f(camera.worldFromCamera[1] * tangent), 0.0f);
+    parameters.cameraForward = word(Vec3f(-camera.worldFromCamera[2]), 0.0f);
+    parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
+                            static_cast<std::uint32_t>(settings.seed >> 32)};
+    parameters.depthLights = {settings.maxDepth, settings.rouletteStart, packed.lightBits, packed.lightCount};
+    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, static_cast<std::uint32_t>(packed.tables.size())};
+    parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()),
+                              static_cast<std::uint32_t>(packed.primitives.size()), packed.materialCount, 0};
+    return parameters;
+}
+
+} // namespace isolux

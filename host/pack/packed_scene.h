@@ -1,0 +1,45 @@
+// A scene in the form that kernels read: the records of shaders/shared, in device space.
+#pragma once
+
+#include "scene/render_settings.h"
+#include "scene/scene.h"
+
+#include "shared/path_records.h"
+#include "shared/scene_records.h"
+
+#include <vector>
+
+namespace isolux {
+
+/// Device space is the world moved and scaled so that the scene fills [-1, 1]: float then has the same relative
+/// accuracy for every scene. The scale is a power of two, so scaling itself rounds nothing.
+struct DeviceSpace {
+    Vec3d center{0.0};
+    double scale = 1.0; ///< device length = scale * world length
+
+    [[nodiscard]] Vec3d fromWorld(const Vec3d& point) const { return (point - center) * scale; }
+};
+
+struct PackedScene {
+    std::vector<shared::NodeRecord> nodes;
+    std::vector<shared::PrimitiveRecord> primitives; ///< in the order of the BVH's leaves
+    std::vector<shared::NormalRecord> normals;       ///< beside `primitives`; empty if every mesh is flat
+    std::vector<glm::uvec4> tables;                  ///< materials, lights, light bins, one after the other
+    std::uint32_t materialCount = 0;
+    std::uint32_t lightCount = 0;
+    std::uint32_t lightBits = 0;
+    std::uint32_t lightOffset = 0; ///< first word of the lights in `tables`
+    std::uint32_t binOffset = 0;   ///< first word of the light bins
+    std::uint32_t stackBound = 1;  ///< entries a traversal stack must hold
+    DeviceSpace space;
+};
+
+/// Transforms in double, builds the BVH over the rounded vertices and packs everything. Throws Error if the scene
+/// has more primitives than a child slot can name (2^28 - 1).
+[[nodiscard]] PackedScene packScene(const Scene& scene);
+
+/// The parameters that stay the same over a render.
+[[nodiscard]] shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene,
+                                                      const RenderSettings& settings);
+
+} // namespace isolux

@@ -1,0 +1,82 @@
+// Renders a scene on a Vulkan device: uploads, specialises the kernel to the scene, dispatches, joins the batches.
+#pragma once
+
+#include "core/progress.h"
+#include "film/film.h"
+#include "gpu/commands.h"
+#include "gpu/kernel.h"
+#include "pack/scene_features.h"
+#include "render/device_scene.h"
+#include "render/schedule.h"
+
+#include "shared/path_records.h"
+
+#include <memory>
+#include <optional>
+
+namespace isolux {
+
+struct RenderOptions {
+    double dispatchSeconds = 0.1; ///< how long a dispatch should last, about; watchdogs end one after a second or two
+    ReadPath readPath = ReadPath::automatic;
+    PathSignatures signatures = PathSignatures::off;
+    std::optional<SceneFeatures> features;  ///< instead of what the scene needs (for tests and benchmarks)
+    std::optional<std::uint32_t> maxLanes;  ///< instead of what suits the device
+};
+
+struct RenderStatistics {
+    double packSeconds = 0.0;    ///< flattening and BVH, on the CPU
+    double uploadSeconds = 0.0;
+    double compileSeconds = 0.0; ///< pipeline and an empty dispatch: some drivers compile only then
+    double deviceSeconds = 0.0;  ///< sum of the dispatches, by device timestamps where there are any
+    double longestDispatchSeconds = 0.0;
+    std::uint64_t dispatchCount = 0;
+    std::size_t sceneBytes = 0;
+    SceneFeatures features;
+};
+
+class PathRenderer {
+public:
+    PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings, const RenderOptions& options);
+
+    /// Renders all samples of all pixels into `film` (of the settings' resolution). If it is interrupted or throws,
+    /// the film holds the tiles and batches finished until then.
+    void render(Film& film, const ProgressCallback& progress) { render(film, wholeImage(), progress); }
+    /// The same for the pixels of a region; the others keep zero samples.
+    void render(Film& film, const Tile& region, const ProgressCallback& progress);
+
+    /// Renders other samples or another depth from now on; resolution and camera stay.
+    void setSamples(const Batch& samples) { samples_ = samples; }
+    void setMaxDepth(std::uint32_t maxDepth);
+
+    [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
+
+private:
+    [[nodiscard]] Tile wholeImage() const;
+    [[nodiscard]] std::uint32_t laneLimit() const;
+    void createKernel(std::uint32_t stackSize);
+    void createPathBuffers();
+    void writeParameters();
+    double dispatch(const Tile& tile, const Batch& batch, std::uint32_t budget, bool fresh);
+    Continue renderTile(const Tile& tile, const Batch& batch, const std::function<Continue(double)>& progress);
+    void joinTile(Film& film, const Tile& tile, const Batch& batch) const;
+
+    const Device& device_;
+    RenderOptions options_;
+    Batch samples_;
+    CommandRunner runner_;
+    RenderStatistics statistics_;
+    shared::RenderParameters parameters_{};
+    std::uint32_t stackSize_ = 1;
+    std::uint32_t maxLanes_ = 0;
+    std::uint32_t budget_ = 0;
+    std::unique_ptr<DeviceScene> scene_;
+    std::unique_ptr<Kernel> kernel_;
+    std::unique_ptr<Buffer> parameterBuffer_;
+    std::unique_ptr<Buffer> paths_;
+    std::unique_ptr<Buffer> films_;
+    std::unique_ptr<Buffer> stacks_;
+    std::unique_ptr<Buffer> completion_;
+};
+
+} // namespace isolux

@@ -1,0 +1,55 @@
+// Two renders of the same random numbers, pixel against pixel: what differs is rounding, a branch that rounding turned,
+// or a mistake. Path signatures tell the last two apart.
+#pragma once
+
+#include "film/film.h"
+#include "report/statistics.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isolux {
+
+enum class Signature { same, different };
+
+struct PairedPixel {
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    Vec3d value{0.0};
+    Vec3d reference{0.0};
+    double relativeDifference = 0.0;
+    Signature signature = Signature::same;
+};
+
+/// Counts are of lit pixels: those with radiance in either film. litPixels = withinTolerance + otherBranch +
+/// unexplained.
+struct PairedDifferences {
+    double tolerance = 0.0;
+    std::uint64_t pixelCount = 0;
+    std::uint64_t litPixels = 0;
+    std::uint64_t differentSignatures = 0; ///< lit pixels where some path took another branch, whatever the difference
+    std::uint64_t withinTolerance = 0;
+    std::uint64_t otherBranch = 0;  ///< outside the tolerance, and the signatures differ
+    std::uint64_t unexplained = 0;  ///< outside the tolerance although every path took the same branches
+    double medianDifference = 0.0;  ///< of the relative differences of lit pixels
+    double difference999 = 0.0;     ///< their 99.9th percentile
+    Interval luminanceBias;         ///< relative bias of mean luminance, paired
+    std::vector<PairedPixel> worst; ///< unexplained ones first, then by relative difference; at most ten
+};
+
+/// A pixel's relative difference: the largest over the channels of |a_c - b_c| / max(|b_c|, luminance(b)), b being the
+/// reference. Each channel is held to its own value, but a channel darker than the pixel's luminance, whose rounding
+/// comes from the brighter ones, to that. It is infinite where the reference is black and the image is not, and where
+/// either is not finite.
+[[nodiscard]] double relativeDifference(const Vec3d& value, const Vec3d& reference);
+
+/// Compares the films of one scene, seed and range of samples, rendered with path signatures. Throws Error (bad input)
+/// if their sizes or sample counts differ.
+[[nodiscard]] PairedDifferences pairedDifferences(const Film& film, const Film& reference, double tolerance = 1e-3);
+
+[[nodiscard]] std::string toText(const PairedDifferences& differences);
+[[nodiscard]] nlohmann::ordered_json toJson(const PairedDifferences& differences);
+
+} // namespace isolux

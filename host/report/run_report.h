@@ -1,0 +1,67 @@
+// What a render says of itself: what was rendered, on what, how long it took and how good the image is.
+#pragma once
+
+#include "film/film.h"
+#include "report/statistics.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isolux {
+
+/// What a film tells of its own error. NaN where a pixel has fewer than two samples, as its variance is unknown.
+struct ImageQuality {
+    Interval meanLuminance;
+    /// Estimated relative RMSE of the image's luminance: sqrt(mean of variance_Y / samples) / mean luminance.
+    double relativeRmse = std::numeric_limits<double>::quiet_NaN();
+};
+[[nodiscard]] ImageQuality imageQuality(const Film& film);
+
+/// Seconds. `render` is wall time from the first dispatch to the last result; start-up is the four before it.
+struct RunTimings {
+    double load = 0.0;
+    double build = 0.0;
+    double upload = 0.0;
+    double compile = 0.0;
+    double render = 0.0;
+    std::optional<double> device; ///< of `render`, measured on the device itself
+
+    [[nodiscard]] double startUp() const { return load + build + upload + compile; }
+};
+
+struct RunReport {
+    std::string scene;
+    std::string sceneHash;
+    std::string backend;
+    std::string deviceName;
+    std::string driverName;
+    std::string driverVersion;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint64_t samplesPerPixel = 0; ///< the most samples any pixel holds
+    std::uint64_t firstSample = 0;
+    std::uint64_t seed = 0;
+    std::optional<std::uint32_t> maxDepth; ///< nothing: no limit
+    RunTimings timings;
+    std::uint64_t rays = 0;
+    std::uint64_t samples = 0; ///< of all pixels
+    std::uint64_t dispatchCount = 0;
+    double longestDispatch = 0.0; ///< seconds
+    Diagnostics diagnostics;
+    std::vector<std::string> validationMessages; ///< of the Vulkan validation layers, if they were asked for
+    ImageQuality quality;
+
+    [[nodiscard]] double raysPerSecond() const; ///< of `timings.render`; NaN if that is 0
+    [[nodiscard]] double samplesPerSecond() const;
+};
+
+/// Sets what the film itself knows: size, sample counts, rays, diagnostics and quality.
+void describeFilm(RunReport& report, const Film& film);
+
+[[nodiscard]] std::string toText(const RunReport& report);
+[[nodiscard]] nlohmann::ordered_json toJson(const RunReport& report);
+
+} // namespace isolux

@@ -1,0 +1,171 @@
+// The glTF loader on files: the project's own scenes, and the shared ones where they are.
+#include "core/error.h"
+#include "load/gltf.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+namespace isolux {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class ProjectScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ProjectScene, LoadsWithTheExpectedFigures) {
+    const fs::path folder = fs::path(ISOLUX_SOURCE_DIR) / "scenes" / GetParam();
+    const json expected = json::parse(std::ifstream(folder / "expected.json"));
+    const Scene scene = loadScene(folder / (GetParam() + ".gltf"));
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+    std::size_t lights = 0;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        lights += scene.materials[mesh.material].emits() ? mesh.triangles.size() : 0;
+        EXPECT_TRUE(mesh.normals.empty());
+    }
+    EXPECT_EQ(primitiveCount(scene), expected["triangles"].get<std::size_t>() + scene.spheres.size());
+    EXPECT_EQ(scene.spheres.size(), expected["spheres"].get<std::size_t>());
+    EXPECT_EQ(scene.cameras.size(), expected["cameras"].get<std::size_t>());
+    EXPECT_EQ(lights, expected["lights"].get<std::size_t>());
+    EXPECT_EQ(scene.cameras.at(0).aspectRatio, 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Load, ProjectScene, ::testing::Values("cornell_box", "cornell_spheres", "furnace"),
+                         [](const auto& instance) { return instance.param; });
+
+/// World-space corners of every triangle of the instance named so.
+std::vector<std::array<Vec3d, 3>> trianglesOf(const Scene& scene, const std::string& name) {
+    std::vector<std::array<Vec3d, 3>> triangles;
+    for (const Instance& instance : scene.instances) {
+        if (instance.name != name) continue;
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        for (const auto& triangle : mesh.triangles) {
+            auto& corners = triangles.emplace_back();
+            for (std::size_t i = 0; i < 3; ++i)
+                corners[i] = Vec3d(instance.worldFromObject * glm::dvec4(Vec3d(mesh.positions[triangle[i]]), 1.0));
+        }
+    }
+    return triangles;
+}
+
+/// Whether all front faces are turned towards a point.
+bool allFace(const std::vector<std::array<Vec3d, 3>>& triangles, const Vec3d& point) {
+    return !triangles.empty() && std::all_of(triangles.begin(), triangles.end(), [&](const auto& t) {
+        return glm::dot(glm::cross(t[1] - t[0], t[2] - t[0]), point - t[0]) > 0.0;
+    });
+}
+
+TEST(ProjectSceneTest, SurfacesFaceTheRightWay) {
+    const fs::path folder = fs::path(ISOLUX_SOURCE_DIR) / "scenes";
+    const Scene furnace = loadScene(folder / "furnace" / "furnace.gltf");
+    EXPECT_TRUE(allFace(trianglesOf(furnace, "walls"), furnace.cameras.at(0).position));
+    const Scene box = loadScene(folder / "cornell_box" / "cornell_box.gltf");
+    for (const char* name : {"walls", "left wall", "right wall", "lamp"})
+        EXPECT_TRUE(allFace(trianglesOf(box, name), Vec3d(0, 1, 0))) << name;
+}
+
+/// The shared test scenes beside the checkout, or nothing after having skipped or failed the test.
+std::optional<fs::path> sharedScenes() {
+    const fs::path folder = fs::path(ISOLUX_SOURCE_DIR) / ".." / "shared" / "scenes";
+    if (fs::is_directory(folder)) return folder;
+    const auto report = [&]() {
+        if (std::getenv("CI") != nullptr) FAIL() << "needs " << folder << ", which is not there";
+        GTEST_SKIP() << "needs the test scenes in ../shared";
+    };
+    report();
+    return std::nullopt;
+}
+
+std::vector<fs::path> gltfFilesIn(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") files.push_back(entry.path());
+    return files;
+}
+
+TEST(SharedScenes, SeedScenesLoad) {
+    const std::optional<fs::path> folder = sharedScenes();
+    if (!folder) return;
+    const std::vector<fs::path> files = gltfFilesIn(*folder / "seed");
+    EXPECT_GE(files.size(), 20u);
+    for (const fs::path& file : files) {
+        const Scene scene = loadScene(file);
+        EXPECT_GT(primitiveCount(scene), 0u) << file;
+        EXPECT_EQ(scene.cameras.size(), 1u) << file;
+    }
+}
+
+/// Defects of geometry, memory or structure: never to be rendered, whatever a later version supports.
+bool mustBeRefused(const std::string& name) {
+    for (const char* part : {"IndicesOutOfRange",
+                             "IndexOutOfRange",
+                             "RecursiveNodes",
+                             "Infinites",
+                             "assimp_Cube",
+                             "badArray",
+                             "badUint",
+                             "scene-invalid",
+                             "default-oob",
+                             "short-size",
+                             "mesh-invalid",
+                             "camera-invalid",
+                             "magnum-plugins_error",
+                             "version-unsupported",
+                             "int64max",
+                             "zero_fov",
+                             "chunk_longer",
+                             "huge_accessor",
+                             "0xffffffff",
+                             "light_index_oob",
+                             "nan_inf",
+                             "node_cycle",
+                             "integer-out-of-bounds",
+                             "invalid-buffer",
+                             "issue-416",
+                             "glb_chunk_too_big",
+                             "two_empty_json",
+                             "zero_length",
+                             "no_bin_chunk",
+                             "sparse_count",
+                             "matrix_alignment",
+                             "node_loop",
+                             "scene_unresolved",
+                             "skin_unresolved",
+                             "texture_unresolved",
+                             "material_unresolved",
+                             "empty_file",
+                             "invalid_object",
+                             "mesh_empty_object",
+                             "morph_attribute",
+                             "matrix_indecomposable",
+                             "asset_",
+                             "bytelength"})
+        if (name.find(part) != std::string::npos) return true;
+    return false;
+}
+
+TEST(SharedScenes, InvalidScenesAreRefusedOrLoaded) {
+    const std::optional<fs::path> folder = sharedScenes();
+    if (!folder) return;
+    const std::vector<fs::path> files = gltfFilesIn(*folder / "invalid");
+    EXPECT_GE(files.size(), 75u);
+    for (const fs::path& file : files) {
+        const std::string name = file.parent_path().filename().string();
+        try {
+            const Scene scene = loadScene(file);
+            validate(scene);
+            EXPECT_FALSE(mustBeRefused(name)) << file;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::badInput) << error.what();
+            EXPECT_NE(std::string(error.what()).find(file.filename().string()), std::string::npos) << error.what();
+        }
+    }
+}
+
+} // namespace
+} // namespace isolux
