@@ -70,7 +70,13 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
         outcome.referenceSeconds = bar.elapsedSeconds();
     }
     if (std::min(film.minSampleCount(), reference.minSampleCount()) < run.settings.sampleCount) return std::nullopt;
-    outcome.differences = pairedDifferences(film, reference, command.tolerance);
+    outcome.differences = pairedDifferences(film, reference, {command.tolerance, nullptr});
+    if (outcome.differences.unexplained > 0) {
+        ProgressBar bar("single precision", display);
+        const Film single = renderReference(run.scene, run.settings, {Precision::singlePrecision}, bar.callback());
+        if (single.minSampleCount() < run.settings.sampleCount) return std::nullopt;
+        outcome.differences = pairedDifferences(film, reference, {command.tolerance, &single});
+    }
     outcome.diagnostics = film.diagnostics;
     outcome.diagnostics.merge(reference.diagnostics);
     for (const PairedPixel& pixel : outcome.differences.worst) {

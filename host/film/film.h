@@ -24,6 +24,8 @@ struct PixelStatistics {
     /// Variance of one sample, unbiased; zero with fewer than two samples.
     [[nodiscard]] Vec3d variance() const;
     [[nodiscard]] double luminanceVariance() const;
+
+    friend bool operator==(const PixelStatistics&, const PixelStatistics&) = default;
 };
 
 /// What should not happen, counted instead of hidden.

@@ -83,8 +83,8 @@ void setAttribute(OIIO::ImageSpec& spec, const std::string& name, double value) 
 
 FileContent exrContent(const Image& image) {
     FileContent content{makeSpec(image, image.channels, OIIO::TypeDesc::FLOAT), image.values, {}};
-    for (const auto& [name, value] : image.metadata) {
-        std::visit([&](const auto& typed) { setAttribute(content.spec, name, typed); }, value);
+    for (const auto& entry : image.metadata) {
+        std::visit([&](const auto& typed) { setAttribute(content.spec, entry.first, typed); }, entry.second);
     }
     content.spec.attribute("compression", "zip");
     content.spec.attribute("oiio:ColorSpace", "Linear");
@@ -135,7 +135,9 @@ FileContent pngContent(const Image& image, const fs::path& path) {
         for (std::size_t c : rgb) content.bytes.push_back(encodeSrgb(scale * double{image.value(pixel, c)}));
         if (alpha) content.bytes.push_back(quantise(coverage));
     }
-    for (const auto& [name, value] : image.metadata) content.spec.attribute(name, *metadataText(image.metadata, name));
+    for (const auto& entry : image.metadata) {
+        content.spec.attribute(entry.first, *metadataText(image.metadata, entry.first));
+    }
     content.spec.attribute("oiio:ColorSpace", "sRGB");
     content.spec.attribute("oiio:UnassociatedAlpha", 1);
     return content;

@@ -153,7 +153,8 @@ void MeshBuilder::fillVertices(Mesh& mesh, const Source& source, std::span<const
 
 /// Many primitives may refer to the same data, so that a small file could ask for any amount of memory.
 void MeshBuilder::charge(std::size_t indices) {
-    constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 28;
+    // Meshes that differ in material alone share data too, so a large factor is no proof of malice.
+    constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 30;
     constexpr std::uint64_t kLargestFactor = 64;
     bytesBuilt_ += std::uint64_t{indices} * (sizeof(std::uint32_t) + 2 * sizeof(Vec3f));
     if (bytesBuilt_ > kAlwaysAllowed && bytesBuilt_ / kLargestFactor > asset_.buffers.totalBytes)

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
-#include <ranges>
-
 namespace isolux {
 namespace {
 
@@ -86,7 +84,7 @@ private:
     }
 
     static void push(std::vector<Visit>& stack, const std::vector<int>& nodes, const Mat4d& parent, std::size_t depth) {
-        for (const int child : nodes | std::views::reverse) stack.push_back({child, parent, depth});
+        for (auto child = nodes.rbegin(); child != nodes.rend(); ++child) stack.push_back({*child, parent, depth});
     }
 
     void place(const Visit& visit, const Mat4d& world) {

@@ -21,7 +21,7 @@ bool isSupported(std::string_view extension) {
 
 /// The part of "2.1" before and after the dot; fails unless both are numbers.
 std::pair<int, int> parseVersion(const JsonReader& version) {
-    const std::string text = version.string();
+    const std::string& text = version.string();
     const bool isValid = text.size() >= 3 && text.size() <= 8 && text.find('.') != std::string::npos &&
                          text.find_first_not_of("0123456789.") == std::string::npos && text.front() != '.' &&
                          text.back() != '.' && text.find('.') == text.rfind('.');
@@ -54,12 +54,12 @@ void verifyAsset(const JsonReader& root) {
 void verifyExtensions(const JsonReader& root) {
     for (std::size_t i = 0; i < root.sizeOf("extensionsRequired"); ++i) {
         const JsonReader entry = root.at("extensionsRequired").element(i);
-        if (const std::string name = entry.string(); !isSupported(name))
+        if (const std::string& name = entry.string(); !isSupported(name))
             entry.fail(fmt::format("the file requires {}, which is not supported; export without it", printable(name)));
     }
     for (std::size_t i = 0; i < root.sizeOf("extensionsUsed"); ++i) {
         const JsonReader entry = root.at("extensionsUsed").element(i);
-        if (const std::string name = entry.string(); !isSupported(name))
+        if (const std::string& name = entry.string(); !isSupported(name))
             entry.warn(fmt::format("{} is not supported; ignored", printable(name)));
     }
 }

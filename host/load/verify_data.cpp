@@ -33,7 +33,7 @@ std::uint64_t componentBytes(const JsonReader& componentType) {
 
 /// Bytes of one element; columns of matrices start at multiples of four bytes (glTF 2.0, 3.6.2.4).
 std::uint64_t elementBytes(const JsonReader& type, std::uint64_t component) {
-    const std::string name = type.string();
+    const std::string& name = type.string();
     const auto matrix = [component](std::uint64_t n) { return n * ((n * component + 3) / 4 * 4); };
     if (name == "SCALAR") return component;
     if (name == "VEC2") return 2 * component;

@@ -64,7 +64,7 @@ void verifyTextures(const JsonReader& material, const JsonReader& root) {
 void verifyAlphaMode(const JsonReader& material) {
     const std::optional<JsonReader> mode = material.find("alphaMode");
     if (!mode) return;
-    const std::string name = mode->string();
+    const std::string& name = mode->string();
     if (name != "OPAQUE" && name != "MASK" && name != "BLEND") mode->fail("must be OPAQUE, MASK or BLEND");
     if (name != "OPAQUE") mode->warn(fmt::format("alpha mode {} is not supported; rendered opaque", name));
 }

@@ -43,6 +43,8 @@ json verifyIndices(const JsonReader& indices, const JsonReader& root) {
     const std::uint64_t type = accessor.at("componentType").integer();
     if (accessor.at("type").string() != "SCALAR" || (type != 5121 && type != 5123 && type != 5125))
         indices.fail("refers to an accessor that is not SCALAR of unsigned bytes, shorts or ints");
+    if (!accessor.find("bufferView"))
+        indices.fail("refers to an accessor without a bufferView, which is not supported; store the indices");
     return indices.integer();
 }
 

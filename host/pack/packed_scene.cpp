@@ -35,17 +35,23 @@ DeviceSpace chooseSpace(const Box3d& bounds) {
 
 Vec3d transformPoint(const Mat4d& matrix, const Vec3f& point) { return Vec3d(matrix * glm::dvec4(Vec3d(point), 1.0)); }
 
-/// Cofactors of the upper 3x3 matrix: the inverse transpose up to a factor, and finite for singular matrices too.
-Mat3d normalMatrix(const Mat4d& m) {
-    const Vec3d x(m[0]);
-    const Vec3d y(m[1]);
-    const Vec3d z(m[2]);
-    return {glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
+double largestEntry(const Mat3d& m) {
+    double largest = 0.0;
+    for (int column = 0; column < 3; ++column) largest = std::max(largest, maxComponent(glm::abs(m[column])));
+    return largest;
 }
 
-Vec3f unitOrZero(const Vec3d& v) {
-    const double size = glm::length(v);
-    return size > 0.0 ? Vec3f(v / size) : Vec3f(0.0f);
+/// The inverse transpose up to a factor: the cofactors of the upper 3x3 matrix, finite for singular matrices too. One
+/// factor for the whole instance keeps the vertex normals' lengths in proportion, as interpolation needs; it is chosen
+/// so that no length is lost to float's range.
+Mat3d normalMatrix(const Mat4d& m) {
+    const Mat3d linear(m);
+    const double size = largestEntry(linear);
+    if (size == 0.0) return Mat3d(0.0);
+    const Mat3d scaled = linear / size;
+    const Mat3d cofactors(glm::cross(scaled[1], scaled[2]), glm::cross(scaled[2], scaled[0]), glm::cross(scaled[0], scaled[1]));
+    const double cofactorSize = largestEntry(cofactors);
+    return cofactorSize == 0.0 ? cofactors : cofactors / cofactorSize;
 }
 
 class Packer {
@@ -82,10 +88,9 @@ private:
             addTriangle({positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]}, mesh.material);
             shared::NormalRecord normals{};
             if (!mesh.normals.empty()) {
-                normals.n0 = word(unitOrZero(normalFromObject * Vec3d(mesh.normals[triangle[0]])), 0.0f);
-                normals.n1 = word(unitOrZero(normalFromObject * Vec3d(mesh.normals[triangle[1]])), 0.0f);
-                normals.n2 = word(unitOrZero(normalFromObject * Vec3d(mesh.normals[triangle[2]])), 0.0f);
-                smooth_ = true;
+                normals.n0 = word(Vec3f(normalFromObject * Vec3d(mesh.normals[triangle[0]])), 0.0f);
+                normals.n1 = word(Vec3f(normalFromObject * Vec3d(mesh.normals[triangle[1]])), 0.0f);
+                normals.n2 = word(Vec3f(normalFromObject * Vec3d(mesh.normals[triangle[2]])), 0.0f);
             }
             primitives_.normals.push_back(normals);
         }
@@ -137,7 +142,6 @@ private:
     void orderByLeaves(const std::vector<std::uint32_t>& order) {
         packed_.primitives.reserve(order.size());
         for (const std::uint32_t id : order) packed_.primitives.push_back(primitives_.records[id]);
-        if (!smooth_) return;
         packed_.normals.reserve(order.size());
         for (const std::uint32_t id : order) packed_.normals.push_back(primitives_.normals[id]);
     }
@@ -184,7 +188,6 @@ private:
     const Scene& scene_;
     LightTable lights_;
     Primitives primitives_;
-    bool smooth_ = false;
     PackedScene packed_;
 };
 

@@ -23,7 +23,7 @@ struct DeviceSpace {
 struct PackedScene {
     std::vector<shared::NodeRecord> nodes;
     std::vector<shared::PrimitiveRecord> primitives; ///< in the order of the BVH's leaves
-    std::vector<shared::NormalRecord> normals;       ///< beside `primitives`; empty if every mesh is flat
+    std::vector<shared::NormalRecord> normals;       ///< beside `primitives`; zero where a mesh is flat
     std::vector<glm::uvec4> tables;                  ///< materials, lights, light bins, one after the other
     std::uint32_t materialCount = 0;
     std::uint32_t lightCount = 0;

@@ -2,6 +2,7 @@
 #include "reference/world.h"
 
 #include <cmath>
+#include <utility>
 
 namespace isolux {
 namespace {
@@ -31,12 +32,12 @@ struct Placement {
     const Mesh& mesh;
     Mat4d worldFromObject;
     Mat3d normalFromObject;
-    double frontSign; ///< -1 if the transform mirrors: the front is then the side seen clockwise (glTF 2.0, 3.7.4)
+    bool mirrored; ///< the front is then the side seen clockwise (glTF 2.0, 3.7.4)
 
     Placement(const Scene& scene, const Instance& instance)
         : mesh(scene.meshes[instance.mesh]), worldFromObject(instance.worldFromObject),
           normalFromObject(normalMatrix(Mat3d(instance.worldFromObject))),
-          frontSign(glm::determinant(Mat3d(instance.worldFromObject)) < 0.0 ? -1.0 : 1.0) {}
+          mirrored(glm::determinant(Mat3d(instance.worldFromObject)) < 0.0) {}
 
     [[nodiscard]] Vec3d position(std::uint32_t vertex) const {
         return Vec3d(worldFromObject * glm::dvec4(Vec3d(mesh.positions[vertex]), 1.0));
@@ -47,7 +48,8 @@ struct Placement {
 };
 
 template <typename Real>
-void addTriangle(World<Real>& world, const Placement& placement, const std::array<std::uint32_t, 3>& vertices) {
+void addTriangle(World<Real>& world, const Placement& placement, std::array<std::uint32_t, 3> vertices) {
+    if (placement.mirrored) std::swap(vertices[1], vertices[2]);
     WorldTriangle<Real> triangle;
     triangle.material = placement.mesh.material;
     std::array<Vec3d, 3> kept; // everything follows from the corners as they are kept, or rays would leak
@@ -61,7 +63,7 @@ void addTriangle(World<Real>& world, const Placement& placement, const std::arra
     const Vec3d cross = glm::cross(kept[1] - kept[0], kept[2] - kept[0]);
     const double length = glm::length(cross);
     if (length > 0.0 && std::isfinite(length)) {
-        triangle.ng = Vec3<Real>(cross * (placement.frontSign / length));
+        triangle.ng = Vec3<Real>(cross / length);
         triangle.area = static_cast<Real>(length / 2);
     }
     world.triangles.push_back(triangle);

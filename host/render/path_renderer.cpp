@@ -50,8 +50,9 @@ template <typename Record> std::span<const Record> recordsIn(const Buffer& buffe
 PathRenderer::PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings, const RenderOptions& options)
     : device_(device), options_(options), samples_{settings.firstSample, settings.sampleCount}, runner_(device) {
     Stopwatch packing;
-    const PackedScene packed = packScene(scene);
+    PackedScene packed = packScene(scene);
     statistics_.features = options.features.value_or(findFeatures(scene, settings));
+    if (!statistics_.features.smoothNormals) packed.normals.clear(); // nothing will read them
     parameters_ = packParameters(packed, scene, settings);
     stackSize_ = packed.stackBound;
     statistics_.packSeconds = packing.seconds();

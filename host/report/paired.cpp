@@ -17,6 +17,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kWorstCount = 10;
+constexpr std::size_t kWorstPrinted = 3;
 
 void requireComparable(const Film& film, const Film& reference) {
     if (film.width != reference.width || film.height != reference.height) {
@@ -29,36 +30,46 @@ void requireComparable(const Film& film, const Film& reference) {
 
 bool isLit(const PairedPixel& pixel) { return pixel.value != Vec3d(0.0) || pixel.reference != Vec3d(0.0); }
 
-PairedPixel makePixel(const Film& film, const Film& reference, std::size_t index) {
-    const PixelStatistics& a = film.pixels[index];
-    const PixelStatistics& b = reference.pixels[index];
-    return {static_cast<std::uint32_t>(index % film.width),
-            static_cast<std::uint32_t>(index / film.width),
-            a.mean,
-            b.mean,
-            relativeDifference(a.mean, b.mean),
-            a.pathSignature == b.pathSignature ? Signature::same : Signature::different};
+Explanation explain(const PairedPixel& pixel, const PairedOptions& options, std::size_t index) {
+    if (pixel.relativeDifference <= options.tolerance) return Explanation::withinTolerance;
+    if (pixel.signature == Signature::different) return Explanation::otherBranch;
+    if (options.singlePrecision == nullptr) return Explanation::none;
+    const double rounding = relativeDifference(options.singlePrecision->pixels[index].mean, pixel.reference);
+    return pixel.relativeDifference <= kRoundingFactor * rounding ? Explanation::rounding : Explanation::none;
 }
 
-std::vector<PairedPixel> litPixels(const Film& film, const Film& reference) {
+PairedPixel makePixel(const Film& film, const Film& reference, const PairedOptions& options, std::size_t index) {
+    const PixelStatistics& a = film.pixels[index];
+    const PixelStatistics& b = reference.pixels[index];
+    PairedPixel pixel;
+    pixel.x = static_cast<std::uint32_t>(index % film.width);
+    pixel.y = static_cast<std::uint32_t>(index / film.width);
+    pixel.value = a.mean;
+    pixel.reference = b.mean;
+    pixel.relativeDifference = relativeDifference(a.mean, b.mean);
+    pixel.signature = a.pathSignature == b.pathSignature ? Signature::same : Signature::different;
+    pixel.explanation = explain(pixel, options, index);
+    return pixel;
+}
+
+std::vector<PairedPixel> litPixels(const Film& film, const Film& reference, const PairedOptions& options) {
     std::vector<PairedPixel> pixels;
     for (std::size_t index = 0; index < film.pixels.size(); ++index) {
-        const PairedPixel pixel = makePixel(film, reference, index);
+        const PairedPixel pixel = makePixel(film, reference, options, index);
         if (isLit(pixel)) pixels.push_back(pixel);
     }
     return pixels;
 }
 
 void count(PairedDifferences& result, const PairedPixel& pixel) {
-    const bool same = pixel.signature == Signature::same;
     ++result.litPixels;
-    result.differentSignatures += !same;
-    if (pixel.relativeDifference <= result.tolerance)
-        ++result.withinTolerance;
-    else if (same)
-        ++result.unexplained;
-    else
-        ++result.otherBranch;
+    result.differentSignatures += pixel.signature == Signature::different;
+    switch (pixel.explanation) {
+    case Explanation::withinTolerance: ++result.withinTolerance; break;
+    case Explanation::otherBranch: ++result.otherBranch; break;
+    case Explanation::rounding: ++result.rounding; break;
+    case Explanation::none: ++result.unexplained; break;
+    }
 }
 
 /// The smallest value that at least the given share of the values does not exceed (nearest rank); 0 of nothing.
@@ -69,10 +80,8 @@ double percentile(const std::vector<PairedPixel>& ascending, double share) {
     return ascending[std::min(index, ascending.size() - 1)].relativeDifference;
 }
 
-std::vector<PairedPixel> worstPixels(std::vector<PairedPixel> pixels, double tolerance) {
-    const auto explained = [&](const PairedPixel& p) {
-        return p.relativeDifference <= tolerance || p.signature == Signature::different;
-    };
+std::vector<PairedPixel> worstPixels(std::vector<PairedPixel> pixels) {
+    const auto explained = [&](const PairedPixel& p) { return p.explanation != Explanation::none; };
     const auto worse = [&](const PairedPixel& a, const PairedPixel& b) {
         return std::tuple(explained(a), -a.relativeDifference, a.y, a.x) <
                std::tuple(explained(b), -b.relativeDifference, b.y, b.x);
@@ -123,14 +132,15 @@ double relativeDifference(const Vec3d& value, const Vec3d& reference) {
     return worst;
 }
 
-PairedDifferences pairedDifferences(const Film& film, const Film& reference, double tolerance) {
+PairedDifferences pairedDifferences(const Film& film, const Film& reference, const PairedOptions& options) {
     requireComparable(film, reference);
+    if (options.singlePrecision != nullptr) requireComparable(*options.singlePrecision, reference);
     PairedDifferences result;
-    result.tolerance = tolerance;
+    result.tolerance = options.tolerance;
     result.pixelCount = film.pixels.size();
-    std::vector<PairedPixel> pixels = litPixels(film, reference);
+    std::vector<PairedPixel> pixels = litPixels(film, reference, options);
     for (const PairedPixel& pixel : pixels) count(result, pixel);
-    result.worst = worstPixels(pixels, tolerance);
+    result.worst = worstPixels(pixels);
     std::sort(pixels.begin(), pixels.end(),
               [](const auto& a, const auto& b) { return a.relativeDifference < b.relativeDifference; });
     result.medianDifference = percentile(pixels, 0.5);
@@ -145,13 +155,15 @@ std::string toText(const PairedDifferences& differences) {
     text += formatLine("within tolerance", fmt::format("{}  (relative {})", differences.withinTolerance,
                                                        formatNumber(differences.tolerance)));
     text += formatLine("another branch", fmt::format("{}", differences.otherBranch));
+    text += formatLine("rounding", fmt::format("{}  (single precision errs there on the CPU as well)", differences.rounding));
     text += formatLine("unexplained", fmt::format("{}", differences.unexplained));
     text += formatLine("difference",
                        fmt::format("median {}, 99.9th percentile {}", formatNumber(differences.medianDifference),
                                    formatNumber(differences.difference999)));
     text += formatLine("relative bias",
                        fmt::format("{}  luminance, paired", formatPercentInterval(differences.luminanceBias)));
-    for (const PairedPixel& pixel : differences.worst) text += formatLine("worst pixel", pixelText(pixel));
+    for (std::size_t i = 0; i < std::min(kWorstPrinted, differences.worst.size()); ++i)
+        text += formatLine("worst pixel", pixelText(differences.worst[i]));
     return text;
 }
 
@@ -166,6 +178,7 @@ ordered_json toJson(const PairedDifferences& differences) {
             {"differentSignatures", differences.differentSignatures},
             {"withinTolerance", differences.withinTolerance},
             {"otherBranch", differences.otherBranch},
+            {"rounding", differences.rounding},
             {"unexplained", differences.unexplained},
             {"medianDifference", differences.medianDifference},
             {"difference999", differences.difference999},

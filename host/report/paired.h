@@ -14,6 +14,9 @@ namespace isolux {
 
 enum class Signature { same, different };
 
+/// Why a pixel is outside the tolerance, if it is.
+enum class Explanation { withinTolerance, otherBranch, rounding, none };
+
 struct PairedPixel {
     std::uint32_t x = 0;
     std::uint32_t y = 0;
@@ -21,9 +24,10 @@ struct PairedPixel {
     Vec3d reference{0.0};
     double relativeDifference = 0.0;
     Signature signature = Signature::same;
+    Explanation explanation = Explanation::withinTolerance;
 };
 
-/// Counts are of lit pixels: those with radiance in either film. litPixels = withinTolerance + otherBranch +
+/// Counts are of lit pixels: those with radiance in either film. litPixels = withinTolerance + otherBranch + rounding +
 /// unexplained.
 struct PairedDifferences {
     double tolerance = 0.0;
@@ -32,7 +36,8 @@ struct PairedDifferences {
     std::uint64_t differentSignatures = 0; ///< lit pixels where some path took another branch, whatever the difference
     std::uint64_t withinTolerance = 0;
     std::uint64_t otherBranch = 0;  ///< outside the tolerance, and the signatures differ
-    std::uint64_t unexplained = 0;  ///< outside the tolerance although every path took the same branches
+    std::uint64_t rounding = 0;     ///< outside on the same branches, but single precision on the CPU errs there as well
+    std::uint64_t unexplained = 0;  ///< outside the tolerance without either reason
     double medianDifference = 0.0;  ///< of the relative differences of lit pixels
     double difference999 = 0.0;     ///< their 99.9th percentile
     Interval luminanceBias;         ///< relative bias of mean luminance, paired
@@ -45,9 +50,21 @@ struct PairedDifferences {
 /// either is not finite.
 [[nodiscard]] double relativeDifference(const Vec3d& value, const Vec3d& reference);
 
+struct PairedOptions {
+    double tolerance = 1e-3; ///< relative difference that rounding may cause in any pixel
+    /// The reference's film in single precision, if the film under test is: some paths (between spheres, say) amplify
+    /// rounding thousandfold, and then two correct programs differ as much from double as from each other. A pixel whose
+    /// difference is at most kRoundingFactor times that of this film is explained by rounding.
+    const Film* singlePrecision = nullptr;
+};
+
+/// Rounding errors are random: by chance the single-precision film's may be small where the other's is large. A hundred
+/// times smaller happens to fewer than one in a hundred.
+inline constexpr double kRoundingFactor = 100.0;
+
 /// Compares the films of one scene, seed and range of samples, rendered with path signatures. Throws Error (bad input)
 /// if their sizes or sample counts differ.
-[[nodiscard]] PairedDifferences pairedDifferences(const Film& film, const Film& reference, double tolerance = 1e-3);
+[[nodiscard]] PairedDifferences pairedDifferences(const Film& film, const Film& reference, const PairedOptions& options = {});
 
 [[nodiscard]] std::string toText(const PairedDifferences& differences);
 [[nodiscard]] nlohmann::ordered_json toJson(const PairedDifferences& differences);

@@ -39,10 +39,10 @@ bool isFiniteBits(vec3 v) { return isFiniteBits(v.x) && isFiniteBits(v.y) && isF
 // The neighbouring float away from zero if `up` has x's sign, else towards it; x finite. Zero moves to the least
 // normal number, since denormals may be flushed.
 float nextFloat(float x, bool up) {
-    if (x == 0.0) return up ? 1.17549435e-38 : -1.17549435e-38;
     uint bits = floatBitsToUint(x);
     bool away = up == (x > 0.0);
-    return uintBitsToFloat(away ? bits + 1u : bits - 1u);
+    float fromZero = up ? 1.17549435e-38 : -1.17549435e-38;
+    return x == 0.0 ? fromZero : uintBitsToFloat(away ? bits + 1u : bits - 1u);
 }
 
 // Orthonormal frame about n (Duff et al. 2017). The sign switches where few scenes have normals, so that rounding
@@ -57,12 +57,9 @@ void frameAbout(vec3 n, out vec3 tangent, out vec3 bitangent) {
 
 // Power heuristic with exponent 2 (Veach 1997, eq. 9.13) in ratio form: no pdf is ever squared.
 float powerHeuristic(float f, float g) {
-    if (g <= f) {
-        float ratio = g / f;
-        return 1.0 / (1.0 + ratio * ratio);
-    }
-    float ratio = f / g;
-    return ratio * ratio / (1.0 + ratio * ratio);
+    float ratio = g <= f ? g / f : f / g;
+    float squared = ratio * ratio;
+    return (g <= f ? 1.0 : squared) / (1.0 + squared);
 }
 
 #endif

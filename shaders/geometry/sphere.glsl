@@ -10,16 +10,16 @@ float intersectSphere(vec3 center, float radius, vec3 origin, vec3 direction) {
     // The discriminant from the distance of the ray's closest point: no cancellation of large squares.
     vec3 closest = f + (b / a) * direction;
     float discriminant = (radius * radius - dot(closest, closest)) * a;
-    if (discriminant < 0.0) return 0.0;
     float distanceToCenter = length(f);
     float c = (distanceToCenter - radius) * (distanceToCenter + radius);
-    float q = b + (b < 0.0 ? -sqrt(discriminant) : sqrt(discriminant));
-    if (q == 0.0) return 0.0;
+    float root = sqrt(max(discriminant, 0.0));
+    float q = b + (b < 0.0 ? -root : root);
     float t0 = c / q;
     float t1 = q / a;
     float nearest = min(t0, t1);
     float furthest = max(t0, t1);
-    return nearest > 0.0 ? nearest : max(furthest, 0.0);
+    float hit = nearest > 0.0 ? nearest : max(furthest, 0.0);
+    return discriminant < 0.0 || q == 0.0 ? 0.0 : hit;
 }
 
 #endif

@@ -27,7 +27,7 @@ struct Query {
     Ray ray;
     uint kind;
     uint ignored;     // the flat primitive the ray leaves: it cannot be hit again, whatever rounding says
-    uint alsoIgnored; // the flat light a shadow ray ends at
+    uint alsoIgnored; // the light a shadow ray ends at
 };
 
 Traversal beginTraversal(float limit, uint nodeCount) {
@@ -52,14 +52,15 @@ void sortPair(inout float ta, inout uint a, inout float tb, inout uint b) {
 }
 
 void pushChild(float entry, uint child, inout uint count, inout uint overflows) {
-    if (entry == kFarthest) return;
-    if (count >= kStackSize) {
-        ++overflows;
-        return;
+    if (entry != kFarthest) {
+        if (count < kStackSize) {
+            stackItems[count] = child;
+            stackEntries[count] = entry;
+            ++count;
+        } else {
+            ++overflows;
+        }
     }
-    stackItems[count] = child;
-    stackEntries[count] = entry;
-    ++count;
 }
 
 // Entry distances of a node's four boxes; kFarthest for those missed, empty, or beyond `limit`. Planes are taken
@@ -104,7 +105,6 @@ void visitNode(uint node, Query query, RayTransform transform, inout Traversal s
 }
 
 void testPrimitive(uint index, Query query, RayTransform transform, inout Traversal state) {
-    if (index == query.ignored || index == query.alsoIgnored) return;
     PrimitiveRecord primitive = readPrimitive(index);
     float distance;
     if (kSpheres && (floatBitsToUint(primitive.p2Id.w) & kSphereBit) != 0u) {
@@ -113,10 +113,19 @@ void testPrimitive(uint index, Query query, RayTransform transform, inout Traver
         distance = intersectTriangle(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
                                      query.ray.origin, transform).distance;
     }
-    if (distance > 0.0 && distance < state.distance) {
+    bool ignored = index == query.ignored || index == query.alsoIgnored;
+    if (!ignored && distance > 0.0 && distance < state.distance) {
         state.distance = distance;
         state.primitive = index;
     }
+}
+
+void visitLeaf(uint item, Query query, RayTransform transform, inout Traversal state, inout uint budget) {
+    uint first = item & kLeafFirstMask;
+    uint count = ((item & ~kLeafBit) >> kLeafCountShift) + 1u;
+    for (uint i = 0u; i < count; ++i) testPrimitive(first + i, query, transform, state);
+    budget -= min(budget, count);
+    if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
 }
 
 // Goes on until the walk is finished (stackCount 0) or `budget` steps (node visits and primitive tests) are used up.
@@ -125,16 +134,13 @@ void traverse(Query query, RayTransform transform, inout Traversal state, inout 
         --budget;
         --state.stackCount;
         uint item = stackItems[state.stackCount];
-        if (stackEntries[state.stackCount] >= state.distance) continue;
-        if ((item & kLeafBit) == 0u) {
-            visitNode(item, query, transform, state, overflows);
-            continue;
+        if (stackEntries[state.stackCount] < state.distance) {
+            if ((item & kLeafBit) == 0u) {
+                visitNode(item, query, transform, state, overflows);
+            } else {
+                visitLeaf(item, query, transform, state, budget);
+            }
         }
-        uint first = item & kLeafFirstMask;
-        uint count = ((item & ~kLeafBit) >> kLeafCountShift) + 1u;
-        for (uint i = 0u; i < count; ++i) testPrimitive(first + i, query, transform, state);
-        budget -= min(budget, count);
-        if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
     }
 }
 

@@ -29,13 +29,14 @@ TriangleHit intersectTriangle(vec3 p0, vec3 p1, vec3 p2, vec3 origin, RayTransfo
     precise float u = c.x * b.y - c.y * b.x;
     precise float v = a.x * c.y - a.y * c.x;
     precise float w = b.x * a.y - b.y * a.x;
-    TriangleHit hit = TriangleHit(0.0, 0.0, 0.0);
-    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return hit;
     float determinant = u + v + w;
-    if (determinant == 0.0) return hit;
-    hit.distance = (u * a.z + v * b.z + w * c.z) / determinant;
-    hit.b0 = u / determinant;
-    hit.b1 = v / determinant;
+    bool outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
+    TriangleHit hit = TriangleHit(0.0, 0.0, 0.0);
+    if (!outside && determinant != 0.0) {
+        hit.distance = (u * a.z + v * b.z + w * c.z) / determinant;
+        hit.b0 = u / determinant;
+        hit.b1 = v / determinant;
+    }
     return hit;
 }
 

@@ -87,97 +87,101 @@ void endSample() {
     ++path.sampleIndex;
     if (path.sampleIndex == parameters.batch.y) {
         path.phase = kPhaseDone;
-        return;
+    } else {
+        beginSample();
     }
-    beginSample();
 }
 
 void addEmission(Surface surface, MaterialRecord material, float distance) {
     vec3 emission = material.emission.xyz;
-    if (emission == vec3(0.0) || !(surface.front || material.emission.w != 0.0)) return;
-    float weight = 1.0;
-    if (kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
-        LightRecord light = readLight(render.tableOffsets.y, surface.light);
-        float cosine = abs(dot(path.ray.direction, surface.facing));
-        weight = powerHeuristic(path.pdf, lightPdf(light, path.ray.origin, distance, cosine));
+    if (emission != vec3(0.0) && (surface.front || material.emission.w != 0.0)) {
+        float weight = 1.0;
+        if (kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
+            LightRecord light = readLight(render.tableOffsets.y, surface.light);
+            float cosine = abs(dot(path.ray.direction, surface.facing));
+            weight = powerHeuristic(path.pdf, lightPdf(light, path.ray.origin, distance, cosine));
+        }
+        path.radiance += path.throughput * emission * weight;
     }
-    path.radiance += path.throughput * emission * weight;
 }
 
 // Samples a light and leaves a pending shadow ray in the path if it could contribute.
 bool sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
     uvec4 random = randomBlock(1u + 2u * path.depth);
-    uint index = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
-    if (index >= render.depthLights.w) {
-        film.faults.z += 1u;
-        return false;
-    }
-    LightSample light = sampleLight(readLight(render.tableOffsets.y, index), surface.position,
+    uint chosen = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
+    if (chosen >= render.depthLights.w) film.faults.z += 1u;
+    uint index = min(chosen, render.depthLights.w - 1u);
+    LightSample light = sampleLight(readLight(render.tableOffsets.y, index), origin,
                                     vec2(unitReal(random.z), unitReal(random.w)));
     float cosine = light.pdf > 0.0 ? lambertianCosine(surface.facing, surface.shading, light.direction) : 0.0;
-    if (cosine <= 0.0) {
+    if (cosine > 0.0) {
+        float weight = powerHeuristic(light.pdf, lambertianPdf(cosine));
+        path.shadowRadiance = path.throughput * lambertianEval(baseColor) * light.emission * (cosine / light.pdf * weight);
+        path.shadowDirection = light.target - origin;
+        path.shadowPrimitive = light.primitive;
+    } else {
         recordEvent(kSignatureNoRay);
-        return false;
     }
-    float weight = powerHeuristic(light.pdf, lambertianPdf(cosine));
-    path.shadowRadiance = path.throughput * lambertianEval(baseColor) * light.emission * (cosine / light.pdf * weight);
-    path.shadowDirection = light.target - origin;
-    path.shadowPrimitive = light.flat_ ? light.primitive : kNone;
-    return true;
+    return cosine > 0.0;
+}
+
+// Whether roulette lets the path live; it then stands for those that were ended.
+bool survivesRoulette(uint word) {
+    float survival = min(maxComponent(path.throughput), kMaxSurvival);
+    bool survives = unitReal(word) < survival;
+    if (survives) path.throughput /= survival;
+    return survives;
 }
 
 // Chooses the next direction, unless the path ends here.
 uint scatter(Surface surface, vec3 baseColor) {
     uvec4 random = randomBlock(2u + 2u * path.depth);
     float cosine;
-    vec3 wi = lambertianSample(surface.shading, vec2(unitReal(random.x), unitReal(random.y)), cosine);
-    path.throughput *= baseColor;
-    if (dot(wi, surface.facing) <= 0.0 || maxComponent(path.throughput) <= 0.0) return kEnds;
-    ++path.depth;
-    if (kRoulette && path.depth >= render.depthLights.y) {
-        float survival = min(maxComponent(path.throughput), kMaxSurvival);
-        if (unitReal(random.z) >= survival) return kEndsByRoulette;
-        path.throughput /= survival;
-    }
-    path.ray.direction = wi;
+    path.ray.direction = lambertianSample(surface.shading, vec2(unitReal(random.x), unitReal(random.y)), cosine);
     path.pdf = lambertianPdf(cosine);
-    return kGoesOn;
+    path.throughput *= baseColor;
+    ++path.depth;
+    uint ending = kGoesOn;
+    if (dot(path.ray.direction, surface.facing) <= 0.0 || maxComponent(path.throughput) <= 0.0) {
+        ending = kEnds;
+    } else if (kRoulette && path.depth >= render.depthLights.y && !survivesRoulette(random.z)) {
+        ending = kEndsByRoulette;
+    }
+    return ending;
 }
 
 void goOnOrEnd() {
     if (path.ending == kGoesOn) {
         beginNearest();
-        return;
+    } else {
+        if (path.ending == kEndsByRoulette) recordEvent(kSignatureRoulette);
+        endSample();
     }
-    if (path.ending == kEndsByRoulette) recordEvent(kSignatureRoulette);
-    endSample();
 }
 
 void shadeHit(RayTransform transform) {
     Surface surface = surfaceAt(path.traversal.primitive, path.ray, transform, path.traversal.distance, kSpheres);
     if (path.depth == 0u) film.mean.w += 1.0;
     recordEvent(surface.id);
-    if (surface.material >= render.sceneCounts.z) {
-        film.faults.z += 1u;
-        endSample();
-        return;
-    }
-    MaterialRecord material = readMaterial(render.tableOffsets.x, surface.material);
+    if (surface.material >= render.sceneCounts.z) film.faults.z += 1u;
+    MaterialRecord material = readMaterial(render.tableOffsets.x, min(surface.material, render.sceneCounts.z - 1u));
     addEmission(surface, material, path.traversal.distance);
     if (path.depth >= render.depthLights.x) {
-        endSample();
-        return;
-    }
-    vec3 origin = offsetOrigin(surface.position, surface.error, surface.facing);
-    bool shadow = kLights != kLightsNone && sampleDirect(surface, origin, material.baseColor.xyz);
-    path.ending = scatter(surface, material.baseColor.xyz);
-    path.ray.origin = origin;
-    path.leaves = surface.flat_ ? path.traversal.primitive : kNone;
-    if (shadow) {
-        path.phase = kPhaseShadow;
-        path.traversal = beginTraversal(1.0, render.sceneCounts.x);
-    } else {
+        path.ending = kEnds;
         goOnOrEnd();
+    } else {
+        vec3 origin = offsetOrigin(surface.position, surface.error, surface.facing);
+        bool lit = kLights != kLightsNone && render.depthLights.w > 0u;
+        bool shadow = lit && sampleDirect(surface, origin, material.baseColor.xyz);
+        path.ending = scatter(surface, material.baseColor.xyz);
+        path.ray.origin = origin;
+        path.leaves = surface.flat_ ? path.traversal.primitive : kNone;
+        if (shadow) {
+            path.phase = kPhaseShadow;
+            path.traversal = beginTraversal(1.0, render.sceneCounts.x);
+        } else {
+            goOnOrEnd();
+        }
     }
 }
 
@@ -188,7 +192,8 @@ void finishShadow() {
     goOnOrEnd();
 }
 
-// One ray, or as much of it as the budget allows.
+// One ray, or as much of it as the budget allows. Functions on this way leave at their ends only: Mesa turns an early
+// return into a loop of one iteration, which would count against its limit.
 void advance(inout uint budget) {
     bool shadow = path.phase == kPhaseShadow;
     Query query;
@@ -198,15 +203,17 @@ void advance(inout uint budget) {
     query.alsoIgnored = shadow ? path.shadowPrimitive : kNone;
     RayTransform transform = transformFor(query.ray);
     traverse(query, transform, path.traversal, budget, film.faults.y);
-    if (path.traversal.stackCount > 0u) return;
-    film.counts.y += 1u;
-    if (shadow) {
-        finishShadow();
-    } else if (path.traversal.primitive == kNone) {
-        recordEvent(kNone);
-        endSample();
-    } else {
-        shadeHit(transform);
+    if (path.traversal.stackCount == 0u) {
+        film.counts.y += 1u;
+        if (shadow) {
+            finishShadow();
+        } else if (path.traversal.primitive == kNone) {
+            recordEvent(kNone);
+            path.ending = kEnds;
+            goOnOrEnd();
+        } else {
+            shadeHit(transform);
+        }
     }
 }
 
@@ -240,31 +247,37 @@ void storePath(uint lane) {
                              uvec4(path.phase, path.sampleIndex, path.traversal.primitive, path.traversal.stackCount),
                              uvec4(path.depth, path.ending, path.signature, 0u),
                              uvec4(path.leaves, path.shadowPrimitive, 0u, 0u));
-    if (path.phase == kPhaseDone) return;
-    for (uint i = 0u; i < path.traversal.stackCount; ++i)
+    uint entries = path.phase == kPhaseDone ? 0u : path.traversal.stackCount;
+    for (uint i = 0u; i < entries; ++i)
         stacks[lane * kStackSize + i] = uvec2(stackItems[i], floatBitsToUint(stackEntries[i]));
 }
 
-void main() {
-    uint lane = gl_GlobalInvocationID.x;
-    uvec2 inTile = pixelOfLane(lane);
-    if (any(greaterThanEqual(inTile, parameters.tile.zw))) return;
-    pixel = parameters.tile.xy + inTile;
+void startOrResume(uint lane) {
     if (parameters.batch.w != 0u) {
         film = FilmRecord(vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u));
         path.sampleIndex = 0u;
         beginSample();
     } else {
         loadPath(lane);
-        if (path.phase == kPhaseDone) return;
         film = films[lane];
     }
-    uint budget = parameters.batch.z;
-    while (budget > 0u && path.phase != kPhaseDone) {
-        --budget;
-        advance(budget);
+}
+
+void main() {
+    uint lane = gl_GlobalInvocationID.x;
+    uvec2 inTile = pixelOfLane(lane);
+    pixel = parameters.tile.xy + inTile;
+    bool works = all(lessThan(inTile, parameters.tile.zw)) &&
+                 (parameters.batch.w != 0u || paths[lane].progress.x != kPhaseDone);
+    if (works) {
+        startOrResume(lane);
+        uint budget = parameters.batch.z;
+        while (budget > 0u && path.phase != kPhaseDone) {
+            --budget;
+            advance(budget);
+        }
+        storePath(lane);
+        films[lane] = film;
+        if (path.phase == kPhaseDone) atomicAdd(completion.finishedLanes.x, 1u);
     }
-    storePath(lane);
-    films[lane] = film;
-    if (path.phase == kPhaseDone) atomicAdd(completion.finishedLanes.x, 1u);
 }

@@ -15,15 +15,17 @@ struct LightSample {
     vec3 direction; // unit, towards it
     float pdf;      // solid angle, choice of light included; 0: the sample does not light the point
     vec3 emission;
-    uint primitive;
-    bool flat_;
+    uint primitive; // a convex emitter cannot hide the point of it that is seen, so the shadow ray ignores it
 };
 
 uint chooseLight(uint binOffset, uint bits, uint binWord, uint aliasWord) {
-    if (kLights == kLightsOne) return 0u;
-    uint bin = bits == 0u ? 0u : binWord >> (32u - bits);
-    uvec2 entry = fetchTable(binOffset + bin).xy;
-    return aliasWord < entry.x ? bin : entry.y;
+    uint light = 0u;
+    if (kLights == kLightsMany) {
+        uint bin = bits == 0u ? 0u : binWord >> (32u - bits);
+        uvec2 entry = fetchTable(binOffset + bin).xy;
+        light = aliasWord < entry.x ? bin : entry.y;
+    }
+    return light;
 }
 
 // Density in solid angle of a uniform point on a triangle.
@@ -53,7 +55,6 @@ LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
     bool emits = cosine > 0.0 || (cosine < 0.0 && light.emission.w != 0.0);
     result.pdf = emits ? trianglePdf(light.p1Choice.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
     result.target = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal);
-    result.flat_ = true;
     return result;
 }
 
@@ -73,7 +74,6 @@ LightSample sampleSphereFromInside(LightRecord light, vec3 from, vec2 u) {
                      ? light.p1Choice.w * distanceSquared / (4.0 * kPi * radius * radius * abs(cosine)) : 0.0;
     vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
     result.target = offsetOrigin(point, error, cosine > 0.0 ? -normal : normal);
-    result.flat_ = false;
     return result;
 }
 
@@ -98,7 +98,6 @@ LightSample sampleSphereFromOutside(LightRecord light, vec3 from, vec2 u, float 
     vec3 normal = normalize(onRay - light.p0Primitive.xyz);
     vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
     result.target = offsetOrigin(light.p0Primitive.xyz + radius * normal, error, normal);
-    result.flat_ = false;
     return result;
 }
 
@@ -127,11 +126,12 @@ LightSample sampleLight(LightRecord light, vec3 from, vec2 u) {
 
 // The density with which sampleLight would have chosen the point of a light that a ray from `from` has hit.
 float lightPdf(LightRecord light, vec3 from, float distance, float cosine) {
-    if (light.p2Area.w > 0.0) return trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine);
     float sineSquared = sphereSineSquared(light, from);
     float radius = light.p1Choice.x;
-    return sineSquared < 1.0 ? light.p1Choice.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared))
-                             : light.p1Choice.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
+    float fromOutside = light.p1Choice.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared));
+    float fromInside = light.p1Choice.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
+    float ofSphere = sineSquared < 1.0 ? fromOutside : fromInside;
+    return light.p2Area.w > 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
 }
 
 #endif

@@ -16,7 +16,7 @@ struct PathRecord {
     vec4 shadowRadiance;    // what arrives if nothing is in between; w unused
     uvec4 progress;         // phase, sample within the batch, nearest primitive found so far, entries on the stack
     uvec4 bounce;           // bounces so far, ending, path signature; w unused
-    uvec4 ignored;          // flat primitive the ray leaves, flat light the shadow ray ends at (kNone: neither); z, w unused
+    uvec4 ignored;          // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
 };
 ISOLUX_CHECK_SIZE(PathRecord, 144);
 

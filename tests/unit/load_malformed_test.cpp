@@ -67,6 +67,11 @@ TEST_F(LoadTest, MalformedDocumentsAreRefusedByPointer) {
              d["accessors"][1]["count"] = 2;
              primitiveOf(d)["attributes"]["NORMAL"] = 1;
          }},
+        {"/meshes/0/primitives/0/indices: refers to an accessor without a bufferView",
+         [](json& d) {
+             d["accessors"].push_back(scalars(5121, 3));
+             primitiveOf(d)["indices"] = 1;
+         }},
         {"/accessors/0/componentType: 5130", set("/accessors/0/componentType", 5130)},
         {"/accessors/0/type: is no accessor type", set("/accessors/0/type", "VEC9")},
         {"/accessors/0/count: is 0", set("/accessors/0/count", 0)},

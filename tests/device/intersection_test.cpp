@@ -1,0 +1,223 @@
+// The device's traversal: against testing every primitive, and against rays that try to slip through.
+#include "device/device_test.h"
+
+#include "load/gltf.h"
+#include "pack/packed_scene.h"
+
+#include "kernels/spirv.h"
+#include "shared/interface.h"
+#include "shared/ray_records.h"
+
+#include <bit>
+#include <cstring>
+#include <random>
+
+namespace isolux::test {
+namespace {
+
+constexpr std::uint32_t kWorkgroupSize = 64;
+constexpr std::uint32_t kRaysPerDispatch = 1u << 16;
+constexpr double kTestsPerDispatch = 1e7; // primitive tests, so that a dispatch stays short
+
+enum class Method { bvh, bruteForce };
+
+using Rays = std::vector<shared::RayRecord>;
+using Hits = std::vector<shared::HitRecord>;
+
+class Intersection : public DeviceTest {
+protected:
+    Hits trace(const PackedScene& scene, const Rays& rays, Method method, ReadPath path = ReadPath::automatic) {
+        CommandRunner runner(device_);
+        const DeviceScene deviceScene(device_, runner, scene, path);
+        const Kernel kernel = makeKernel(deviceScene, scene.stackBound, method);
+        Hits hits;
+        for (std::size_t first = 0; first < rays.size(); first += kRaysPerDispatch) {
+            const std::size_t count = std::min<std::size_t>(kRaysPerDispatch, rays.size() - first);
+            const Hits chunk = traceChunk(runner, kernel, scene, std::span(rays).subspan(first, count), method);
+            hits.insert(hits.end(), chunk.begin(), chunk.end());
+        }
+        return hits;
+    }
+
+private:
+    Kernel makeKernel(const DeviceScene& scene, std::uint32_t stackSize, Method method) const {
+        KernelSource source;
+        source.spirv = kernels::intersect;
+        source.pushConstantSize = sizeof(shared::IntersectParameters);
+        source.specialization = {{shared::kSpecWorkgroupSize, kWorkgroupSize},
+                                 {shared::kSpecTexelBuffers, scene.usesTexelBuffers() ? 1u : 0u},
+                                 {shared::kSpecStackSize, stackSize},
+                                 {shared::kSpecBruteForce, method == Method::bruteForce ? 1u : 0u}};
+        Kernel kernel(device_, source);
+        scene.bindTo(kernel);
+        return kernel;
+    }
+
+    Hits traceChunk(CommandRunner& runner, const Kernel& kernel, const PackedScene& scene,
+                    std::span<const shared::RayRecord> rays, Method method) const {
+        constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+        const Buffer rayBuffer(device_, rays.size_bytes(), kStorage, BufferAccess::hostWrites);
+        const Buffer hitBuffer(device_, rays.size() * sizeof(shared::HitRecord), kStorage, BufferAccess::hostReads);
+        std::memcpy(rayBuffer.mapped().data(), rays.data(), rays.size_bytes());
+        rayBuffer.flush();
+        Kernel& bound = const_cast<Kernel&>(kernel); // NOLINT: binding changes no state that callers see
+        bound.bind(shared::kBindRays, rayBuffer);
+        bound.bind(shared::kBindHits, hitBuffer);
+        const auto primitives = static_cast<std::uint32_t>(scene.primitives.size());
+        const auto rayCount = static_cast<std::uint32_t>(rays.size());
+        // Some drivers end loops after 65,535 iterations over the lanes of a subgroup: chunks stay far below.
+        const auto step = static_cast<std::uint32_t>(std::clamp(kTestsPerDispatch / rayCount, 1.0, 4000.0));
+        for (std::uint32_t begin = 0; begin < primitives; begin += step) {
+            const shared::IntersectParameters parameters{
+                {0, rayCount, begin, method == Method::bruteForce ? std::min(begin + step, primitives) : primitives}};
+            runner.run([&](VkCommandBuffer commands) {
+                bound.record(commands, std::as_bytes(std::span(&parameters, 1)), (rayCount + kWorkgroupSize - 1) / kWorkgroupSize);
+            });
+            if (method == Method::bvh) break;
+        }
+        hitBuffer.invalidate();
+        Hits hits(rays.size());
+        std::memcpy(hits.data(), hitBuffer.mapped().data(), hits.size() * sizeof(shared::HitRecord));
+        return hits;
+    }
+};
+
+class RayMaker {
+public:
+    explicit RayMaker(const PackedScene& scene) : scene_(scene) {}
+
+    /// All kinds in turn: between random points in and around the scene, along axes, in the planes of boxes, from and
+    /// to vertices, of very different lengths.
+    Rays make(std::size_t count) {
+        Rays rays;
+        rays.reserve(count);
+        while (rays.size() < count) rays.push_back(next(rays.size() % 6));
+        return rays;
+    }
+
+    shared::RayRecord towards(const Vec3f& origin, const Vec3f& target, float length = 1.0f) const {
+        return {{origin, 3e38f}, {(target - origin) * length, 0.0f}};
+    }
+
+    Vec3f vertex() {
+        const shared::PrimitiveRecord& primitive = scene_.primitives[index()];
+        const std::array corners{Vec3f(primitive.p0Material), Vec3f(primitive.p1Light), Vec3f(primitive.p2Id)};
+        return isSphere(primitive) ? corners[0] : corners[random_() % 3];
+    }
+
+    Vec3f edgePoint() {
+        const shared::PrimitiveRecord& primitive = scene_.primitives[index()];
+        const std::array corners{Vec3f(primitive.p0Material), Vec3f(primitive.p1Light), Vec3f(primitive.p2Id)};
+        if (isSphere(primitive)) return corners[0];
+        const std::size_t i = random_() % 3;
+        return glm::mix(corners[i], corners[(i + 1) % 3], unit());
+    }
+
+    Vec3f point(float size) { return size * Vec3f(2.0f * unit() - 1.0f, 2.0f * unit() - 1.0f, 2.0f * unit() - 1.0f); }
+
+private:
+    shared::RayRecord next(std::size_t kind) {
+        const Vec3f origin = point(kind == 1 ? 3.0f : 1.0f);
+        switch (kind) {
+        case 0:
+        case 1: return towards(origin, point(1.0f));
+        case 2: { // along an axis, with zeros of either sign
+            Vec3f direction(random_() % 2 == 0 ? 0.0f : -0.0f);
+            direction[static_cast<int>(random_() % 3)] = random_() % 2 == 0 ? 1.0f : -1.0f;
+            return {{origin, 3e38f}, {direction, 0.0f}};
+        }
+        case 3: { // in the plane of a vertex
+            Vec3f direction = point(1.0f);
+            const int axis = static_cast<int>(random_() % 3);
+            direction[axis] = 0.0f;
+            Vec3f start = origin;
+            start[axis] = vertex()[axis];
+            return {{start, 3e38f}, {direction, 0.0f}};
+        }
+        case 4: return towards(origin, vertex(), std::ldexp(1.0f, static_cast<int>(random_() % 40) - 20));
+        default: return towards(edgePoint(), point(1.0f));
+        }
+    }
+
+    static bool isSphere(const shared::PrimitiveRecord& primitive) {
+        return (std::bit_cast<std::uint32_t>(primitive.p2Id.w) & shared::kSphereBit) != 0;
+    }
+    std::size_t index() { return random_() % scene_.primitives.size(); }
+    float unit() { return std::uniform_real_distribution<float>(0.0f, 1.0f)(random_); }
+
+    const PackedScene& scene_;
+    std::mt19937 random_{42};
+};
+
+struct Disagreement {
+    std::size_t count = 0;
+    std::size_t hits = 0;
+    std::size_t unfinished = 0;
+};
+
+/// The nearest distances must be the same to the last bit; which of several primitives at it is named may differ.
+Disagreement disagreement(const Hits& a, const Hits& b) {
+    Disagreement result;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const bool hitA = a[i].primitive.x != shared::kNone;
+        const bool hitB = b[i].primitive.x != shared::kNone;
+        if (hitA) ++result.hits;
+        if (a[i].primitive.y == 0 || b[i].primitive.y == 0) ++result.unfinished;
+        if (hitA != hitB || (hitA && a[i].distance.x != b[i].distance.x)) ++result.count;
+    }
+    return result;
+}
+
+class BvhAgainstBruteForce : public Intersection {
+protected:
+    void expectSameHits(const std::filesystem::path& file, double totalTests) {
+        const PackedScene scene = packScene(loadScene(file));
+        const auto count = static_cast<std::size_t>(std::min(1e6, totalTests / static_cast<double>(scene.primitives.size())));
+        const Rays rays = RayMaker(scene).make(count);
+        const Disagreement result = disagreement(trace(scene, rays, Method::bvh), trace(scene, rays, Method::bruteForce));
+        EXPECT_EQ(result.count, 0u) << file << ": of " << count << " rays, " << result.hits << " hits";
+        EXPECT_EQ(result.unfinished, 0u) << file;
+        EXPECT_GT(result.hits, count / 20) << file;
+    }
+};
+
+constexpr double kAllTests = 2e9;
+
+TEST_F(BvhAgainstBruteForce, CornellBox) { expectSameHits(projectScene("cornell_box"), kAllTests); }
+TEST_F(BvhAgainstBruteForce, CornellSpheres) { expectSameHits(projectScene("cornell_spheres"), kAllTests); }
+TEST_F(BvhAgainstBruteForce, Furnace) { expectSameHits(projectScene("furnace"), kAllTests); }
+TEST_F(BvhAgainstBruteForce, Blob) { expectSameHits(blobScene(), kAllTests); }
+
+/// Needs the collection of scenes beside the checkout. A fiftieth of the tests, all of them with --long.
+TEST_F(BvhAgainstBruteForce, SeedScenes) {
+    const auto folder = sharedFolder();
+    if (!folder && inContinuousIntegration()) FAIL() << "../shared is missing";
+    if (!folder) GTEST_SKIP() << "needs the scenes of ../shared, which are not part of the project";
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(*folder / "scenes" / "seed"))
+        if (entry.path().extension() == ".glb") expectSameHits(entry.path(), longTests() ? kAllTests : kAllTests / 50);
+}
+
+TEST_F(Intersection, StorageBuffersFindTheSame) {
+    const PackedScene scene = packScene(loadScene(projectScene("cornell_spheres")));
+    const Rays rays = RayMaker(scene).make(20'000);
+    const Hits texels = trace(scene, rays, Method::bvh, ReadPath::texelBuffers);
+    EXPECT_EQ(disagreement(texels, trace(scene, rays, Method::bvh, ReadPath::storageBuffers)).count, 0u);
+}
+
+/// From inside the blob's closed room every ray must hit something, also those aimed at edges and vertices.
+TEST_F(Intersection, ClosedMeshesAreWatertight) {
+    const PackedScene scene = packScene(loadScene(blobScene()));
+    RayMaker maker(scene);
+    Rays rays;
+    for (int i = 0; i < 1'000'000; ++i) {
+        const Vec3f origin = maker.point(0.3f);
+        rays.push_back(maker.towards(origin, i % 2 == 0 ? maker.vertex() : maker.edgePoint()));
+    }
+    std::size_t escaped = 0;
+    for (const shared::HitRecord& hit : trace(scene, rays, Method::bvh))
+        if (hit.primitive.x == shared::kNone) ++escaped;
+    EXPECT_EQ(escaped, 0u);
+}
+
+} // namespace
+} // namespace isolux::test

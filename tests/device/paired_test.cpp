@@ -1,0 +1,105 @@
+// The device against the double reference on the same random numbers.
+#include "device/device_test.h"
+
+#include "load/gltf.h"
+#include "reference/reference.h"
+#include "report/paired.h"
+
+#include <cmath>
+
+namespace isolux::test {
+namespace {
+
+constexpr double kTolerance = 1e-3;
+constexpr double kAgreement = 0.999;
+constexpr double kMaxRelativeBias = 1e-4;
+
+class Paired : public DeviceTest {
+protected:
+    PairedDifferences compare(const Scene& scene, const RenderSettings& settings) {
+        RenderOptions options;
+        options.signatures = PathSignatures::on;
+        const Film film = render(scene, settings, options);
+        const Film reference = renderReference(
+            scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, {});
+        const PairedDifferences differences = pairedDifferences(film, reference, {kTolerance, nullptr});
+        if (differences.differentSignatures == 0) {
+            EXPECT_EQ(film.rays, reference.rays);
+        }
+        if (differences.unexplained == 0) return differences;
+        const Film single = renderReference(scene, settings, {Precision::singlePrecision}, {});
+        return pairedDifferences(film, reference, {kTolerance, &single});
+    }
+
+    void expectAgreement(const Scene& scene, const RenderSettings& settings, double agreement = kAgreement) {
+        const PairedDifferences differences = compare(scene, settings);
+        SCOPED_TRACE(toText(differences));
+        EXPECT_GT(differences.litPixels, settings.width * settings.height / 10);
+        EXPECT_EQ(differences.unexplained, 0u);
+        EXPECT_GE(static_cast<double>(differences.withinTolerance), agreement * static_cast<double>(differences.litPixels));
+        EXPECT_LT(std::abs(differences.luminanceBias.estimate), kMaxRelativeBias);
+    }
+};
+
+TEST_F(Paired, CornellBox) { expectAgreement(loadScene(projectScene("cornell_box")), imageSettings(256, 256, 16)); }
+
+TEST_F(Paired, CornellSpheres) { expectAgreement(loadScene(projectScene("cornell_spheres")), imageSettings(256, 256, 16)); }
+
+TEST_F(Paired, Furnace) { expectAgreement(loadScene(projectScene("furnace")), imageSettings(64, 64, 32)); }
+
+/// Bounces between bumps amplify rounding from one to the next: fewer pixels agree to 1e-3, each explained.
+TEST_F(Paired, Blob) { expectAgreement(loadScene(blobScene()), imageSettings(128, 96, 16), 0.99); }
+
+TEST_F(Paired, DepthsAndSampleRanges) {
+    const Scene scene = loadScene(projectScene("cornell_spheres"));
+    for (const std::uint32_t depth : {0u, 1u, 2u, 5u}) {
+        RenderSettings settings = imageSettings(48, 64, 20);
+        settings.maxDepth = depth;
+        settings.firstSample = 1000;
+        settings.seed = 0x123456789abcdefull;
+        const PairedDifferences differences = compare(scene, settings);
+        SCOPED_TRACE(toText(differences));
+        EXPECT_EQ(differences.unexplained, 0u) << "depth " << depth;
+        EXPECT_GT(differences.litPixels, 0u);
+    }
+}
+
+/// Spheres that emit: seen from outside and, the camera being inside the largest, from inside; one lit from both faces.
+TEST_F(Paired, SphereLights) {
+    Scene scene = furnaceScene(Vec3d(0.6, 0.4, 0.2), Vec3d(0.0));
+    scene.materials.push_back({"bulb", Vec3d(0.3), Vec3d(9.0, 5.0, 1.0), false});
+    scene.materials.push_back({"shell", Vec3d(0.5), Vec3d(0.2, 0.3, 0.4), true});
+    scene.spheres = {{"small", Vec3d(-0.5, 0.4, -0.6), 0.01, 1},
+                     {"large", Vec3d(0.5, -0.4, -0.5), 0.35, 1},
+                     {"around the camera", scene.cameras[0].position, 0.25, 2}};
+    expectAgreement(scene, imageSettings(96, 96, 16));
+    scene.spheres.pop_back();
+    expectAgreement(scene, imageSettings(96, 96, 16));
+}
+
+/// Mirrored, rotated and sheared instances of a smooth mesh, shared between them.
+TEST_F(Paired, InstancesWithNegativeScale) {
+    Scene scene = loadScene(projectScene("cornell_spheres"));
+    Mesh mesh;
+    mesh.name = "smooth tetrahedron";
+    mesh.positions = {{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
+    for (const Vec3f& position : mesh.positions) mesh.normals.push_back(glm::normalize(position));
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    mesh.material = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.push_back({"lamp", Vec3d(0.7, 0.6, 0.5), Vec3d(1.5), false});
+    const auto meshIndex = static_cast<std::uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(mesh);
+    const Vec3d center = worldBounds(scene).center();
+    const double size = 0.08 * maxComponent(worldBounds(scene).extent());
+    for (const Vec3d scale : {Vec3d(1, 1, 1), Vec3d(-1, 1, 1), Vec3d(-1, -0.5, -2)}) {
+        Mat4d transform(1.0);
+        for (int axis = 0; axis < 3; ++axis) transform[axis][axis] = size * scale[axis];
+        transform[1][0] = 0.3 * size; // a shear
+        transform[3] = glm::dvec4(center + Vec3d(scale.x + scale.z, scale.y, 0.0) * (1.5 * size), 1.0);
+        scene.instances.push_back({"tetrahedron", meshIndex, transform});
+    }
+    expectAgreement(scene, imageSettings(128, 128, 16));
+}
+
+} // namespace
+} // namespace isolux::test

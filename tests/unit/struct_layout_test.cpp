@@ -1,0 +1,74 @@
+// The structs of shaders/shared as C++ lays them out, against the offsets in the SPIR-V that ships.
+#include "gpu/spirv_reflection.h"
+
+#include "kernels/spirv.h"
+#include "shared/path_records.h"
+#include "shared/ray_records.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+namespace isolux {
+namespace {
+
+using Members = std::vector<std::pair<std::string, std::size_t>>;
+
+void expectLayout(const SpirvModule& module, const std::string& name, const Members& members, std::size_t size) {
+    const auto found = module.structs.find(name);
+    ASSERT_NE(found, module.structs.end()) << name << " is not in the module";
+    ASSERT_EQ(found->second.size(), members.size()) << name;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        EXPECT_EQ(found->second[i].name, members[i].first) << name;
+        EXPECT_EQ(found->second[i].offset, members[i].second) << name << "." << members[i].first;
+    }
+    const auto stride = module.arrayStrides.find(name);
+    if (stride != module.arrayStrides.end()) {
+        EXPECT_EQ(stride->second, size) << name;
+    }
+}
+
+#define MEMBER(type, member) {#member, offsetof(shared::type, member)}
+
+TEST(StructLayout, PathKernel) {
+    const SpirvModule module = reflectSpirv(kernels::path);
+    expectLayout(module, "PathRecord",
+                 {MEMBER(PathRecord, originPdf), MEMBER(PathRecord, directionDistance), MEMBER(PathRecord, throughput),
+                  MEMBER(PathRecord, radiance), MEMBER(PathRecord, shadowDirection), MEMBER(PathRecord, shadowRadiance),
+                  MEMBER(PathRecord, progress), MEMBER(PathRecord, bounce), MEMBER(PathRecord, ignored)},
+                 sizeof(shared::PathRecord));
+    expectLayout(module, "FilmRecord",
+                 {MEMBER(FilmRecord, mean), MEMBER(FilmRecord, squaredDeviation), MEMBER(FilmRecord, counts),
+                  MEMBER(FilmRecord, faults)},
+                 sizeof(shared::FilmRecord));
+    expectLayout(module, "RenderParameters",
+                 {MEMBER(RenderParameters, cameraPosition), MEMBER(RenderParameters, cameraRight),
+                  MEMBER(RenderParameters, cameraUp), MEMBER(RenderParameters, cameraForward),
+                  MEMBER(RenderParameters, imageSeed), MEMBER(RenderParameters, depthLights),
+                  MEMBER(RenderParameters, tableOffsets), MEMBER(RenderParameters, sceneCounts)},
+                 sizeof(shared::RenderParameters));
+    expectLayout(module, "DispatchParameters", {MEMBER(DispatchParameters, tile), MEMBER(DispatchParameters, batch)},
+                 sizeof(shared::DispatchParameters));
+    expectLayout(module, "CompletionRecord", {MEMBER(CompletionRecord, finishedLanes)}, sizeof(shared::CompletionRecord));
+}
+
+TEST(StructLayout, IntersectKernel) {
+    const SpirvModule module = reflectSpirv(kernels::intersect);
+    expectLayout(module, "RayRecord", {MEMBER(RayRecord, originDistance), MEMBER(RayRecord, direction)},
+                 sizeof(shared::RayRecord));
+    expectLayout(module, "HitRecord", {MEMBER(HitRecord, distance), MEMBER(HitRecord, primitive)}, sizeof(shared::HitRecord));
+    expectLayout(module, "IntersectParameters", {MEMBER(IntersectParameters, range)}, sizeof(shared::IntersectParameters));
+}
+
+#undef MEMBER
+
+TEST(SpirvReflection, RefusesWhatIsNotAModule) {
+    EXPECT_THROW((void)reflectSpirv({}), std::exception);
+    const std::array<std::uint32_t, 6> wrongMagic{1, 0, 0, 0, 0, 0};
+    EXPECT_THROW((void)reflectSpirv(wrongMagic), std::exception);
+    const std::array<std::uint32_t, 6> truncated{0x07230203u, 0, 0, 0, 0, 9u << 16};
+    EXPECT_THROW((void)reflectSpirv(truncated), std::exception);
+}
+
+} // namespace
+} // namespace isolux
