@@ -66,20 +66,16 @@ void pushChild(float entry, uint child, inout uint count, inout uint overflows) 
 // Entry distances of a node's four boxes; kFarthest for those missed, empty, or beyond `limit`. Planes are taken
 // relative to the origin before they are scaled, so the relative error stays at 3.5 ulp a side (half for the
 // subtraction, 2.5 for the division the API allows, half for the product) and 2^-19 covers both (Ize 2013).
-vec4 childEntries(uvec4 words0, uvec4 lower, uvec4 upper, uvec4 children, vec3 origin, vec3 inverse, float limit) {
+vec4 childEntries(uvec4 words0, uvec4 lower, uvec4 upper, uvec4 children, RayTransform transform, float limit) {
     vec3 base = uintBitsToFloat(words0.xyz);
-    precise vec4 lowerX = base.x + bytesOf(lower.x) * scaleOf(words0.w, 0u);
-    precise vec4 lowerY = base.y + bytesOf(lower.y) * scaleOf(words0.w, 8u);
-    precise vec4 lowerZ = base.z + bytesOf(lower.z) * scaleOf(words0.w, 16u);
-    precise vec4 upperX = base.x + bytesOf(lower.w) * scaleOf(words0.w, 0u);
-    precise vec4 upperY = base.y + bytesOf(upper.x) * scaleOf(words0.w, 8u);
-    precise vec4 upperZ = base.z + bytesOf(upper.y) * scaleOf(words0.w, 16u);
-    precise vec4 x0 = (lowerX - origin.x) * inverse.x;
-    precise vec4 x1 = (upperX - origin.x) * inverse.x;
-    precise vec4 y0 = (lowerY - origin.y) * inverse.y;
-    precise vec4 y1 = (upperY - origin.y) * inverse.y;
-    precise vec4 z0 = (lowerZ - origin.z) * inverse.z;
-    precise vec4 z1 = (upperZ - origin.z) * inverse.z;
+    vec3 scale = vec3(scaleOf(words0.w, 0u), scaleOf(words0.w, 8u), scaleOf(words0.w, 16u));
+    vec3 inverse = transform.inverseDirection;
+    precise vec4 x0 = (base.x + bytesOf(lower.x) * scale.x - transform.lowerOrigin.x) * inverse.x;
+    precise vec4 y0 = (base.y + bytesOf(lower.y) * scale.y - transform.lowerOrigin.y) * inverse.y;
+    precise vec4 z0 = (base.z + bytesOf(lower.z) * scale.z - transform.lowerOrigin.z) * inverse.z;
+    precise vec4 x1 = (base.x + bytesOf(lower.w) * scale.x - transform.upperOrigin.x) * inverse.x;
+    precise vec4 y1 = (base.y + bytesOf(upper.x) * scale.y - transform.upperOrigin.y) * inverse.y;
+    precise vec4 z1 = (base.z + bytesOf(upper.y) * scale.z - transform.upperOrigin.z) * inverse.z;
     vec4 entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), vec4(0.0)));
     vec4 exit = min(min(max(x0, x1), max(y0, y1)), max(z0, z1)) * 1.0000019;
     bvec4 hit = bvec4(uvec4(lessThanEqual(entry, exit)) & uvec4(lessThan(entry, vec4(limit))) &
@@ -90,8 +86,8 @@ vec4 childEntries(uvec4 words0, uvec4 lower, uvec4 upper, uvec4 children, vec3 o
 void visitNode(uint node, Query query, RayTransform transform, inout Traversal state, inout uint overflows) {
     uint word = node * kNodeWords;
     uvec4 children = fetchNode(word + 3u);
-    vec4 entries = childEntries(fetchNode(word), fetchNode(word + 1u), fetchNode(word + 2u), children, query.ray.origin,
-                                transform.inverseDirection, state.distance);
+    vec4 entries = childEntries(fetchNode(word), fetchNode(word + 1u), fetchNode(word + 2u), children, transform,
+                                state.distance);
     // Farthest first on the stack; a sorting network of five comparisons.
     sortPair(entries.x, children.x, entries.y, children.y);
     sortPair(entries.z, children.z, entries.w, children.w);
