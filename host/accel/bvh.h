@@ -12,7 +12,8 @@ namespace isolux {
 struct Bvh {
     struct Node {
         Box3f bounds;
-        std::uint32_t first = 0; ///< leaf: first entry in `primitives`; inner: first of two neighbouring children in `nodes`
+        std::uint32_t first =
+            0; ///< leaf: first entry in `primitives`; inner: first of two neighbouring children in `nodes`
         std::uint32_t count = 0; ///< leaf: number of primitives; inner: 0
 
         [[nodiscard]] bool isLeaf() const { return count > 0; }

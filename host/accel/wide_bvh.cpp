@@ -29,7 +29,9 @@ std::vector<std::uint32_t> gatherChildren(const Bvh& bvh, std::uint32_t root) {
     return children;
 }
 
-float decode(float origin, std::uint8_t q, int exponent) { return origin + std::ldexp(static_cast<float>(q), exponent); }
+float decode(float origin, std::uint8_t q, int exponent) {
+    return origin + std::ldexp(static_cast<float>(q), exponent);
+}
 
 /// Largest q whose decoded value is at most `bound`, with a unit in the last place to spare; 0 is exact.
 std::uint8_t quantizeLower(float origin, int exponent, float bound) {

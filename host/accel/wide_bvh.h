@@ -43,7 +43,8 @@ struct WideNode {
     std::array<std::int8_t, 3> exponent{};
     std::array<std::array<std::uint8_t, kWidth>, 3> lower{}; ///< [axis][child]
     std::array<std::array<std::uint8_t, kWidth>, 3> upper{};
-    std::array<WideChild, kWidth> children{WideChild::empty(), WideChild::empty(), WideChild::empty(), WideChild::empty()};
+    std::array<WideChild, kWidth> children{WideChild::empty(), WideChild::empty(), WideChild::empty(),
+                                           WideChild::empty()};
 
     /// A child's box as a device decodes it.
     [[nodiscard]] Box3f childBounds(int child) const;

@@ -64,9 +64,11 @@ void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const Ba
 
 void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
                        const ProgressCallback& progress) {
-    report.deviceName = options.precision == Precision::doublePrecision ? "CPU, double precision" : "CPU, single precision";
+    report.deviceName =
+        options.precision == Precision::doublePrecision ? "CPU, double precision" : "CPU, single precision";
     const ScopedTimer timer(report.timings.render);
-    film = renderReference(run.scene, run.settings, {options.precision, Intersector::bvh, options.signatures}, progress);
+    film =
+        renderReference(run.scene, run.settings, {options.precision, Intersector::bvh, options.signatures}, progress);
 }
 
 } // namespace

@@ -20,7 +20,8 @@ struct CompareCommand {
 };
 
 ExitCode run(const CompareCommand& command) {
-    const ComparisonReport report = compareImages(readImage(command.image), readImage(command.reference), command.limits);
+    const ComparisonReport report =
+        compareImages(readImage(command.image), readImage(command.reference), command.limits);
     fmt::print("{}", command.json ? toJson(report).dump(2) + "\n" : toText(report));
     return report.verdict() == Verdict::within ? ExitCode::success : ExitCode::failure;
 }
@@ -33,9 +34,11 @@ void addCompareCommand(CLI::App& app, ExitCode& result) {
     sub->add_option("IMAGE", command->image, "The image to judge")->required();
     sub->add_option("REFERENCE", command->reference, "What it is held against")->required();
     sub->add_flag("--json", command->json, "Print JSON");
-    sub->add_option("--max-relative-bias", command->limits.maxRelativeBias, "Largest relative difference of the means, as a fraction")
+    sub->add_option("--max-relative-bias", command->limits.maxRelativeBias,
+                    "Largest relative difference of the means, as a fraction")
         ->check(CLI::NonNegativeNumber);
-    sub->add_option("--max-rel-mse", command->limits.maxRelMse, "Largest relative mean squared error")->check(CLI::NonNegativeNumber);
+    sub->add_option("--max-rel-mse", command->limits.maxRelMse, "Largest relative mean squared error")
+        ->check(CLI::NonNegativeNumber);
     sub->footer("A limit is exceeded only if the whole 95 % interval lies beyond it.\n"
                 "Exit codes: 0 within the limits, 1 beyond one, 2 unreadable or of different size.\n"
                 "Examples:\n"

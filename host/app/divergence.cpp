@@ -48,7 +48,8 @@ std::optional<Divergence> findDivergence(PathRenderer& renderer, const Scene& sc
     PixelProbe probe(renderer, scene, settings, pixel);
     for (std::uint32_t i = 0; i < settings.sampleCount; ++i) {
         const std::uint32_t sample = settings.firstSample + i;
-        if (probe.differs(sample, settings.maxDepth)) return Divergence{sample, firstBounce(probe, sample, settings.maxDepth)};
+        if (probe.differs(sample, settings.maxDepth))
+            return Divergence{sample, firstBounce(probe, sample, settings.maxDepth)};
     }
     return std::nullopt;
 }

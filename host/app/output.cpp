@@ -22,8 +22,9 @@ Metadata metadataOf(const RunReport& report) {
             {"isolux/sceneHash", report.sceneHash},
             {"isolux/device", report.deviceName},
             {"isolux/driver", fmt::format("{} {}", report.driverName, report.driverVersion)},
-            {"isolux/options", fmt::format("--backend {} --width {} --height {}{}", report.backend, report.width, report.height,
-                                           report.maxDepth ? fmt::format(" --max-depth {}", *report.maxDepth) : "")}};
+            {"isolux/options",
+             fmt::format("--backend {} --width {} --height {}{}", report.backend, report.width, report.height,
+                         report.maxDepth ? fmt::format(" --max-depth {}", *report.maxDepth) : "")}};
 }
 
 /// Whether the file at `path` may hold more samples than `samples`: it says so, or says nothing of samples.
@@ -43,14 +44,16 @@ std::filesystem::path partialName(const std::filesystem::path& path) {
 
 } // namespace
 
-void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report, Completion completion) {
+void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report,
+                  Completion completion) {
     const Image image = imageFromFilm(film, metadataOf(report));
     for (const std::filesystem::path path : paths) {
         const bool beside = completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount());
         const std::filesystem::path target = beside ? partialName(path) : path;
         writeImage(target, image);
         if (completion == Completion::interrupted)
-            spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(), film.maxSampleCount(), target.string());
+            spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(),
+                         film.maxSampleCount(), target.string());
     }
 }
 

@@ -14,7 +14,8 @@ enum class Completion { whole, interrupted };
 
 /// Writes the film to every path. An interrupted render replaces a file only if that holds no more samples; otherwise
 /// it goes beside it, with ".partial" in its name.
-void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report, Completion completion);
+void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report,
+                  Completion completion);
 
 /// Writes a text file to a temporary name, flushed and renamed. Throws Error.
 void writeText(const std::string& path, const std::string& text);

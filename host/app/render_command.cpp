@@ -1,9 +1,9 @@
 // `isolux render`: a scene to image files, with a report of time and error.
 #include "app/backends.h"
 #include "app/commands.h"
+#include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/scene_options.h"
-#include "app/output.h"
 #include "core/log.h"
 
 #include <CLI/CLI.hpp>
@@ -69,8 +69,12 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
     auto command = std::make_shared<RenderCommand>();
     addSceneOptions(*sub, command->scene);
     sub->add_option("-o,--output", command->outputs, "Image to write: .exr, .png or .hdr; may be repeated")->required();
-    sub->add_option("--backend", command->backend, "What renders")->check(CLI::IsMember({"vulkan", "reference"}))->capture_default_str();
-    sub->add_option("--precision", command->precision, "Of the reference")->check(CLI::IsMember({"double", "float"}))->capture_default_str();
+    sub->add_option("--backend", command->backend, "What renders")
+        ->check(CLI::IsMember({"vulkan", "reference"}))
+        ->capture_default_str();
+    sub->add_option("--precision", command->precision, "Of the reference")
+        ->check(CLI::IsMember({"double", "float"}))
+        ->capture_default_str();
     sub->add_option("--json", command->json, "Also write the report to this file");
     sub->footer("Ctrl-C keeps what is done: the samples finished so far are written.\n"
                 "Exit codes: 0 done, 1 failed, 2 bad usage or input, 75 try again (device lost, out of memory), "

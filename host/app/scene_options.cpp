@@ -22,7 +22,8 @@ void checkSettings(const RenderSettings& settings) {
     if (settings.width == 0 || settings.height == 0 || settings.width > kMaxEdge || settings.height > kMaxEdge)
         throwBadInput("--width, --height", fmt::format("must lie between 1 and {}", kMaxEdge));
     if (std::uint64_t{settings.width} * settings.height > kMaxPixels)
-        throwBadInput("--width, --height", fmt::format("{} x {} pixels are more than {}", settings.width, settings.height, kMaxPixels));
+        throwBadInput("--width, --height",
+                      fmt::format("{} x {} pixels are more than {}", settings.width, settings.height, kMaxPixels));
     if (settings.sampleCount == 0) throwBadInput("--spp", "must be at least 1");
     if (settings.firstSample > std::numeric_limits<std::uint32_t>::max() - settings.sampleCount)
         throwBadInput("--first-sample", "sample indices must stay below 2^32");
@@ -37,9 +38,11 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
     command.add_option("--width", options.width, "Image width in pixels");
     command.add_option("--height", options.height, "Image height; by default from the width and the camera");
     command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
-    command.add_option("--max-depth", options.maxDepth, "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
+    command.add_option("--max-depth", options.maxDepth,
+                       "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
     command.add_option("--device", options.device, "Vulkan device by number or part of its name (default: the best)");
-    command.add_flag("--validation", options.validation, "Run under the Vulkan validation layers; any message is a failure");
+    command.add_flag("--validation", options.validation,
+                     "Run under the Vulkan validation layers; any message is a failure");
     command.add_flag("-q,--quiet", options.quiet, "Print errors alone");
     command.add_flag("-v,--verbose", options.verbose, "Say what is being done");
 }

@@ -41,7 +41,8 @@ struct Outcome {
 
 bool passes(const Outcome& outcome, const VerifyCommand& command) {
     const PairedDifferences& d = outcome.differences;
-    const double agreement = d.litPixels == 0 ? 1.0 : static_cast<double>(d.withinTolerance) / static_cast<double>(d.litPixels);
+    const double agreement =
+        d.litPixels == 0 ? 1.0 : static_cast<double>(d.withinTolerance) / static_cast<double>(d.litPixels);
     return d.unexplained == 0 && agreement >= command.minAgreement &&
            checkLimit(d.luminanceBias, command.maxRelativeBias) == Verdict::within && outcome.diagnostics.clean() &&
            outcome.validationMessages == 0;
@@ -92,7 +93,8 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
 void printText(const Outcome& outcome) {
     fmt::print("device        {}\n{}", outcome.device, toText(outcome.differences));
     for (const auto& [pixel, divergence] : outcome.divergences)
-        fmt::print("pixel ({}, {}) parts at sample {}, bounce {}\n", pixel.x, pixel.y, divergence.sample, divergence.bounce);
+        fmt::print("pixel ({}, {}) parts at sample {}, bounce {}\n", pixel.x, pixel.y, divergence.sample,
+                   divergence.bounce);
     fmt::print("time          device {:.2f} s, reference {:.2f} s\n", outcome.deviceSeconds, outcome.referenceSeconds);
     if (!outcome.diagnostics.clean()) fmt::print("diagnostics   not clean: render with --json to see the counts\n");
     if (outcome.validationMessages > 0) fmt::print("validation    {} messages\n", outcome.validationMessages);
@@ -106,7 +108,8 @@ void printJson(const Outcome& outcome) {
     json["referenceSeconds"] = outcome.referenceSeconds;
     json["divergences"] = nlohmann::ordered_json::array();
     for (const auto& [pixel, divergence] : outcome.divergences)
-        json["divergences"].push_back({{"x", pixel.x}, {"y", pixel.y}, {"sample", divergence.sample}, {"bounce", divergence.bounce}});
+        json["divergences"].push_back(
+            {{"x", pixel.x}, {"y", pixel.y}, {"sample", divergence.sample}, {"bounce", divergence.bounce}});
     json["validationMessages"] = outcome.validationMessages;
     json["diagnosticsClean"] = outcome.diagnostics.clean();
     json["passed"] = outcome.passed;
@@ -130,15 +133,18 @@ void addVerifyCommand(CLI::App& app, ExitCode& result) {
     auto command = std::make_shared<VerifyCommand>();
     command->scene.samples = 16;
     addSceneOptions(*sub, command->scene);
-    sub->add_option("--tolerance", command->tolerance, "Relative difference that rounding may cause in a pixel")->capture_default_str();
-    sub->add_option("--min-agreement", command->minAgreement, "Share of lit pixels that must be within it")->capture_default_str();
+    sub->add_option("--tolerance", command->tolerance, "Relative difference that rounding may cause in a pixel")
+        ->capture_default_str();
+    sub->add_option("--min-agreement", command->minAgreement, "Share of lit pixels that must be within it")
+        ->capture_default_str();
     sub->add_option("--max-relative-bias", command->maxRelativeBias, "Of the mean luminance")->capture_default_str();
     sub->add_flag("--json", command->json, "Print JSON");
-    sub->footer("Both backends take the same random numbers, so pixels agree to rounding unless rounding turned a path to\n"
-                "another branch; path signatures tell which. Exit code 0: they agree; 1: they do not.\n"
-                "Examples:\n"
-                "  isolux verify scene.glb\n"
-                "  isolux verify scene.glb --width 128 --spp 64 --seed 3");
+    sub->footer(
+        "Both backends take the same random numbers, so pixels agree to rounding unless rounding turned a path to\n"
+        "another branch; path signatures tell which. Exit code 0: they agree; 1: they do not.\n"
+        "Examples:\n"
+        "  isolux verify scene.glb\n"
+        "  isolux verify scene.glb --width 128 --spp 64 --seed 3");
     sub->callback([command, &result] { result = run(*command); });
 }
 

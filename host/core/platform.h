@@ -5,7 +5,7 @@
 
 namespace isolux {
 
-/// From now on Ctrl-C (SIGINT, SIGTERM) sets a flag; a second one ends the process at once.
+/// From now on Ctrl-C (SIGINT, SIGTERM) sets a flag; another one, half a second later or more, ends the process.
 void catchInterrupts();
 [[nodiscard]] bool interruptRequested() noexcept;
 

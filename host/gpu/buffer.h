@@ -10,9 +10,9 @@ namespace isolux {
 
 /// Where a buffer is used from, which decides its memory.
 enum class BufferAccess {
-    deviceOnly,  ///< fastest for kernels; filled once by `upload` (mapped if the memory allows it, staged otherwise)
-    hostReads,   ///< kernels write it, the host reads it back: cached host memory if there is any
-    hostWrites   ///< the host writes small amounts often
+    deviceOnly, ///< fastest for kernels; filled once by `upload` (mapped if the memory allows it, staged otherwise)
+    hostReads,  ///< kernels write it, the host reads it back: cached host memory if there is any
+    hostWrites  ///< the host writes small amounts often
 };
 
 class Buffer {

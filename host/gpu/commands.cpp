@@ -7,8 +7,8 @@
 namespace isolux {
 namespace {
 
-void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags fromAccess, VkPipelineStageFlags to,
-                   VkAccessFlags toAccess) {
+void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags fromAccess,
+                   VkPipelineStageFlags to, VkAccessFlags toAccess) {
     auto barrier = vulkanStruct<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
     barrier.srcAccessMask = fromAccess;
     barrier.dstAccessMask = toAccess;
@@ -67,7 +67,8 @@ void CommandRunner::begin() const {
         vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
         vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
     }
-    memoryBarrier(commands_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWrites | VK_ACCESS_HOST_WRITE_BIT, kWork, kReads | kWrites);
+    memoryBarrier(commands_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWrites | VK_ACCESS_HOST_WRITE_BIT, kWork,
+                  kReads | kWrites);
 }
 
 void CommandRunner::end() const {
@@ -93,8 +94,8 @@ void CommandRunner::submitAndWait() const {
 double CommandRunner::elapsedSeconds(double hostSeconds) const {
     if (timestamps_.get() == VK_NULL_HANDLE) return hostSeconds;
     std::array<std::uint64_t, 2> ticks{};
-    check(vkGetQueryPoolResults(device_->handle(), timestamps_.get(), 0, 2, sizeof(ticks), ticks.data(), sizeof(ticks[0]),
-                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+    check(vkGetQueryPoolResults(device_->handle(), timestamps_.get(), 0, 2, sizeof(ticks), ticks.data(),
+                                sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
     const std::uint64_t elapsed = (ticks[1] - ticks[0]) & device_->limits().timestampMask;
     return static_cast<double>(elapsed) * device_->limits().secondsPerTimestamp;

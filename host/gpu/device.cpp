@@ -22,6 +22,12 @@ void loadVulkan() {
                                "the software driver) or render with --backend reference");
 }
 
+[[noreturn]] void throwNoDriver() {
+    throwFailure("Vulkan",
+                 "no driver for any device; install one (Debian: mesa-vulkan-drivers has a software driver) or "
+                 "render with --backend reference");
+}
+
 VkInstance makeInstance(Validation validation) {
     loadVulkan();
     auto application = vulkanStruct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
@@ -43,8 +49,10 @@ VkInstance makeInstance(Validation validation) {
     }
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver();
     if (result == VK_ERROR_LAYER_NOT_PRESENT)
-        throwFailure("vkCreateInstance", "the Khronos validation layer is not installed (Debian: vulkan-validationlayers)");
+        throwFailure("vkCreateInstance",
+                     "the Khronos validation layer is not installed (Debian: vulkan-validationlayers)");
     check(result, "vkCreateInstance");
     volkLoadInstance(instance);
     return instance;
@@ -89,7 +97,8 @@ int preference(VkPhysicalDeviceType type) {
 }
 
 std::string versionText(std::uint32_t version) {
-    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                       VK_API_VERSION_PATCH(version));
 }
 
 std::string whyUnusable(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
@@ -119,12 +128,14 @@ DeviceDescription describe(VkPhysicalDevice device, std::uint32_t index) {
 }
 
 std::string lowercase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
 }
 
 bool matches(const DeviceDescription& description, const std::string& selector) {
-    const bool isIndex = std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+    const bool isIndex =
+        std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
     if (isIndex) return std::to_string(description.index) == selector;
     return lowercase(description.name).find(lowercase(selector)) != std::string::npos;
 }
@@ -162,8 +173,10 @@ void Device::createInstance(Validation validation) {
 }
 
 void Device::createMessenger() {
-    auto info = vulkanStruct<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
-    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    auto info =
+        vulkanStruct<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     info.pUserData = messages_.get();
     info.pfnUserCallback = [](VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -178,14 +191,13 @@ void Device::createMessenger() {
 
 void Device::choosePhysicalDevice(const std::string& selector) {
     const std::vector<VkPhysicalDevice> devices = physicalDevices(instance_);
-    if (devices.empty())
-        throwFailure("Vulkan", "no device; install a driver (Debian: mesa-vulkan-drivers has a software one)");
+    if (devices.empty()) throwNoDriver();
     int best = -1;
     std::string seen;
     for (std::uint32_t i = 0; i < devices.size(); ++i) {
         const DeviceDescription description = describe(devices[i], i);
-        seen += fmt::format("\n  {}: {}{}{}", i, description.name, description.unusable.empty() ? "" : ", unusable: ",
-                            description.unusable);
+        seen += fmt::format("\n  {}: {}{}{}", i, description.name,
+                            description.unusable.empty() ? "" : ", unusable: ", description.unusable);
         if (!selector.empty() && !matches(description, selector)) continue;
         if (!description.unusable.empty()) continue;
         VkPhysicalDeviceProperties properties;
@@ -215,7 +227,8 @@ void Device::createDevice() {
 }
 
 void Device::readLimits() {
-    auto subgroup = vulkanStruct<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
+    auto subgroup =
+        vulkanStruct<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
     auto properties = vulkanStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
     properties.pNext = &subgroup;
     vkGetPhysicalDeviceProperties2(physical_, &properties);
@@ -236,7 +249,8 @@ void Device::readLimits() {
     limits_.secondsPerTimestamp = bits == 0 ? 0.0 : static_cast<double>(limits.timestampPeriod) * 1e-9;
 }
 
-std::uint32_t Device::memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags required, VkMemoryPropertyFlags wanted) const {
+std::uint32_t Device::memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags required,
+                                 VkMemoryPropertyFlags wanted) const {
     for (const VkMemoryPropertyFlags flags : {required | wanted, required})
         for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
             if ((typeBits & (1u << i)) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags) return i;

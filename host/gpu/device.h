@@ -17,7 +17,7 @@ struct DeviceDescription {
     std::string name;
     std::string driverName;
     std::string driverVersion; ///< as the driver states it, e.g. with the versions of Mesa and LLVM
-    std::string type;   ///< "discrete GPU", "software", ...
+    std::string type;          ///< "discrete GPU", "software", ...
     bool software = false;
     std::string unusable; ///< why Isolux cannot use it; empty if it can
 };

@@ -57,7 +57,8 @@ void Kernel::createPipeline(const KernelSource& source) {
     info.stage.pSpecializationInfo = &specialization;
     info.layout = layout_.get();
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), "vkCreateComputePipelines");
+    check(vkCreateComputePipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+          "vkCreateComputePipelines");
     pipeline_ = {device_->handle(), pipeline, vkDestroyPipeline};
 }
 
@@ -107,7 +108,8 @@ void Kernel::bindTexels(std::uint32_t binding, VkBufferView view) {
     vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
 }
 
-void Kernel::record(VkCommandBuffer commands, std::span<const std::byte> pushConstants, std::uint32_t groupCount) const {
+void Kernel::record(VkCommandBuffer commands, std::span<const std::byte> pushConstants,
+                    std::uint32_t groupCount) const {
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0, nullptr);
     if (!pushConstants.empty())

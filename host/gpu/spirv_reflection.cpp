@@ -99,7 +99,8 @@ SpirvModule reflectSpirv(std::span<const std::uint32_t> words) {
     }
     for (const Reader::Variable& variable : reader.variables) {
         const auto found = reader.bindings.find(variable.id);
-        if (found != reader.bindings.end()) module.bindings.push_back({found->second, descriptorType(variable.storage)});
+        if (found != reader.bindings.end())
+            module.bindings.push_back({found->second, descriptorType(variable.storage)});
     }
     std::sort(module.bindings.begin(), module.bindings.end(),
               [](const SpirvBinding& a, const SpirvBinding& b) { return a.binding < b.binding; });

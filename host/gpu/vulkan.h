@@ -26,7 +26,8 @@ public:
     using Destroy = void (*)(VkDevice, Handle, const VkAllocationCallbacks*);
 
     DeviceHandle() = default;
-    DeviceHandle(VkDevice device, Handle handle, Destroy destroy) : device_(device), handle_(handle), destroy_(destroy) {}
+    DeviceHandle(VkDevice device, Handle handle, Destroy destroy)
+        : device_(device), handle_(handle), destroy_(destroy) {}
     DeviceHandle(const DeviceHandle&) = delete;
     DeviceHandle& operator=(const DeviceHandle&) = delete;
     DeviceHandle(DeviceHandle&& other) noexcept { swap(other); }

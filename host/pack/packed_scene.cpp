@@ -49,7 +49,8 @@ Mat3d normalMatrix(const Mat4d& m) {
     const double size = largestEntry(linear);
     if (size == 0.0) return Mat3d(0.0);
     const Mat3d scaled = linear / size;
-    const Mat3d cofactors(glm::cross(scaled[1], scaled[2]), glm::cross(scaled[2], scaled[0]), glm::cross(scaled[0], scaled[1]));
+    const Mat3d cofactors(glm::cross(scaled[1], scaled[2]), glm::cross(scaled[2], scaled[0]),
+                          glm::cross(scaled[0], scaled[1]));
     const double cofactorSize = largestEntry(cofactors);
     return cofactorSize == 0.0 ? cofactors : cofactors / cofactorSize;
 }
@@ -98,8 +99,8 @@ private:
 
     void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
-        primitives_.records.push_back({word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])),
-                                       word(p[2], asFloat(id))});
+        primitives_.records.push_back(
+            {word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])), word(p[2], asFloat(id))});
         Box3f box;
         for (const Vec3f& vertex : p) box.extend(vertex);
         primitives_.boxes.push_back(box);
@@ -125,7 +126,8 @@ private:
         packed_.stackBound = wide.stackBound;
         packed_.nodes.reserve(wide.nodes.size());
         const auto pack4 = [](const std::array<std::uint8_t, 4>& q) {
-            return std::uint32_t{q[0]} | std::uint32_t{q[1]} << 8 | std::uint32_t{q[2]} << 16 | std::uint32_t{q[3]} << 24;
+            return std::uint32_t{q[0]} | std::uint32_t{q[1]} << 8 | std::uint32_t{q[2]} << 16 |
+                   std::uint32_t{q[3]} << 24;
         };
         for (const WideNode& node : wide.nodes) {
             std::uint32_t exponents = 0;
@@ -170,8 +172,7 @@ private:
         const Vec3d p2(primitive.p2Id);
         const double area = sphere ? 0.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
         const Material& material = scene_.materials[std::bit_cast<std::uint32_t>(primitive.p0Material.w)];
-        return {word(Vec3f(p0), asFloat(indexOfId[id])),
-                word(Vec3f(p1), static_cast<float>(lights_.choice.pdf[light])),
+        return {word(Vec3f(p0), asFloat(indexOfId[id])), word(Vec3f(p1), static_cast<float>(lights_.choice.pdf[light])),
                 word(Vec3f(p2), static_cast<float>(area)), emissionOf(material)};
     }
 
@@ -207,7 +208,8 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};
     parameters.depthLights = {settings.maxDepth, settings.rouletteStart, packed.lightBits, packed.lightCount};
-    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, static_cast<std::uint32_t>(packed.tables.size())};
+    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset,
+                               static_cast<std::uint32_t>(packed.tables.size())};
     parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()),
                               static_cast<std::uint32_t>(packed.primitives.size()), packed.materialCount, 0};
     return parameters;

@@ -12,8 +12,8 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kPartCount = 4;
-constexpr std::array<std::uint32_t, kPartCount> kBindings{shared::kBindNodes, shared::kBindPrimitives, shared::kBindNormals,
-                                                          shared::kBindTables};
+constexpr std::array<std::uint32_t, kPartCount> kBindings{shared::kBindNodes, shared::kBindPrimitives,
+                                                          shared::kBindNormals, shared::kBindTables};
 constexpr std::array kPartNames{"BVH", "primitives", "vertex normals", "materials and lights"};
 constexpr VkDeviceSize kWordBytes = 16;
 
@@ -42,17 +42,19 @@ DeviceScene::DeviceScene(const Device& device, CommandRunner& runner, const Pack
     for (std::size_t i = 0; i < kPartCount; ++i) {
         const bool fits = texels_ ? fitsTexelBuffers(limits, parts[i]) : fitsStorageBuffers(limits, parts[i]);
         if (!fits)
-            throwFailure(device.description().name,
-                         fmt::format("the scene's {} take {} MiB, more than one buffer can bind there; use a device with "
-                                     "larger buffers or --backend reference",
-                                     kPartNames[i], parts[i].size() >> 20));
+            throwFailure(
+                device.description().name,
+                fmt::format("the scene's {} take {} MiB, more than one buffer can bind there; use a device with "
+                            "larger buffers or --backend reference",
+                            kPartNames[i], parts[i].size() >> 20));
         parts_.push_back(makePart(device, runner, parts[i]));
         bytes_ += parts[i].size();
     }
 }
 
 DeviceScene::Part DeviceScene::makePart(const Device& device, CommandRunner& runner, std::span<const std::byte> data) {
-    constexpr VkBufferUsageFlags kTexelUsage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    constexpr VkBufferUsageFlags kTexelUsage =
+        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     constexpr VkBufferUsageFlags kStorageUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     // The binding that is not read still needs something bound to it.
     const VkDeviceSize texelBytes = texels_ ? data.size() : 0;

@@ -47,7 +47,8 @@ template <typename Record> std::span<const Record> recordsIn(const Buffer& buffe
 
 } // namespace
 
-PathRenderer::PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings, const RenderOptions& options)
+PathRenderer::PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings,
+                           const RenderOptions& options)
     : device_(device), options_(options), samples_{settings.firstSample, settings.sampleCount}, runner_(device) {
     Stopwatch packing;
     PackedScene packed = packScene(scene);
@@ -72,7 +73,8 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
 Tile PathRenderer::wholeImage() const { return {0, 0, parameters_.imageSeed.x, parameters_.imageSeed.y}; }
 
 std::uint32_t PathRenderer::laneLimit() const {
-    const std::uint32_t wanted = options_.maxLanes.value_or(device_.description().software ? kSoftwareLanes : kHardwareLanes);
+    const std::uint32_t wanted =
+        options_.maxLanes.value_or(device_.description().software ? kSoftwareLanes : kHardwareLanes);
     const std::size_t laneBytes = std::max(sizeof(shared::PathRecord), std::size_t{8} * stackSize_);
     const auto storable = static_cast<std::uint32_t>(
         std::min<VkDeviceSize>(device_.limits().maxStorageBufferRange / laneBytes, kHardwareLanes));
@@ -87,7 +89,8 @@ void PathRenderer::createPathBuffers() {
     paths_ = std::make_unique<Buffer>(device_, lanes * sizeof(shared::PathRecord), kStorage, BufferAccess::deviceOnly);
     stacks_ = std::make_unique<Buffer>(device_, lanes * stackSize_ * 8, kStorage, BufferAccess::deviceOnly);
     films_ = std::make_unique<Buffer>(device_, lanes * sizeof(shared::FilmRecord), kStorage, BufferAccess::hostReads);
-    completion_ = std::make_unique<Buffer>(device_, sizeof(shared::CompletionRecord), kStorage, BufferAccess::hostReads);
+    completion_ =
+        std::make_unique<Buffer>(device_, sizeof(shared::CompletionRecord), kStorage, BufferAccess::hostReads);
     parameterBuffer_ = std::make_unique<Buffer>(device_, sizeof(parameters_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                                                 BufferAccess::hostWrites);
 }
@@ -131,9 +134,8 @@ double PathRenderer::dispatch(const Tile& tile, const Batch& batch, std::uint32_
     const shared::DispatchParameters parameters{{tile.x, tile.y, tile.width, tile.height},
                                                 {batch.firstSample, batch.sampleCount, budget, fresh ? 1u : 0u}};
     const std::uint32_t groups = std::max(tile.laneCount() / kWorkgroupSize, 1u);
-    return runner_.run([&](VkCommandBuffer commands) {
-        kernel_->record(commands, std::as_bytes(std::span(&parameters, 1)), groups);
-    });
+    return runner_.run(
+        [&](VkCommandBuffer commands) { kernel_->record(commands, std::as_bytes(std::span(&parameters, 1)), groups); });
 }
 
 void PathRenderer::render(Film& film, const Tile& region, const ProgressCallback& progress) {
@@ -149,7 +151,8 @@ void PathRenderer::render(Film& film, const Tile& region, const ProgressCallback
         }
 }
 
-Continue PathRenderer::renderTile(const Tile& tile, const Batch& batch, const std::function<Continue(double)>& progress) {
+Continue PathRenderer::renderTile(const Tile& tile, const Batch& batch,
+                                  const std::function<Continue(double)>& progress) {
     const std::uint32_t maximum = maxStepBudget(device_.limits().subgroupSize);
     std::memset(completion_->mapped().data(), 0, completion_->mapped().size());
     completion_->flush();

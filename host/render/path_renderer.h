@@ -20,12 +20,12 @@ struct RenderOptions {
     double dispatchSeconds = 0.1; ///< how long a dispatch should last, about; watchdogs end one after a second or two
     ReadPath readPath = ReadPath::automatic;
     PathSignatures signatures = PathSignatures::off;
-    std::optional<SceneFeatures> features;  ///< instead of what the scene needs (for tests and benchmarks)
-    std::optional<std::uint32_t> maxLanes;  ///< instead of what suits the device
+    std::optional<SceneFeatures> features; ///< instead of what the scene needs (for tests and benchmarks)
+    std::optional<std::uint32_t> maxLanes; ///< instead of what suits the device
 };
 
 struct RenderStatistics {
-    double packSeconds = 0.0;    ///< flattening and BVH, on the CPU
+    double packSeconds = 0.0; ///< flattening and BVH, on the CPU
     double uploadSeconds = 0.0;
     double compileSeconds = 0.0; ///< pipeline and an empty dispatch: some drivers compile only then
     double deviceSeconds = 0.0;  ///< sum of the dispatches, by device timestamps where there are any
@@ -37,7 +37,8 @@ struct RenderStatistics {
 
 class PathRenderer {
 public:
-    PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings, const RenderOptions& options);
+    PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings,
+                 const RenderOptions& options);
 
     /// Renders all samples of all pixels into `film` (of the settings' resolution). If it is interrupted or throws,
     /// the film holds the tiles and batches finished until then.

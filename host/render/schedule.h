@@ -49,6 +49,7 @@ struct ScheduleLimits {
 [[nodiscard]] std::uint32_t maxStepBudget(std::uint32_t subgroupSize);
 
 /// The next dispatch's step budget, from how long the last one took, to last about `targetSeconds`: it at most doubles.
-[[nodiscard]] std::uint32_t nextStepBudget(std::uint32_t budget, double seconds, double targetSeconds, std::uint32_t maximum);
+[[nodiscard]] std::uint32_t nextStepBudget(std::uint32_t budget, double seconds, double targetSeconds,
+                                           std::uint32_t maximum);
 
 } // namespace isolux

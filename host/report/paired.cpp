@@ -155,7 +155,8 @@ std::string toText(const PairedDifferences& differences) {
     text += formatLine("within tolerance", fmt::format("{}  (relative {})", differences.withinTolerance,
                                                        formatNumber(differences.tolerance)));
     text += formatLine("another branch", fmt::format("{}", differences.otherBranch));
-    text += formatLine("rounding", fmt::format("{}  (single precision errs there on the CPU as well)", differences.rounding));
+    text += formatLine("rounding",
+                       fmt::format("{}  (single precision errs there on the CPU as well)", differences.rounding));
     text += formatLine("unexplained", fmt::format("{}", differences.unexplained));
     text += formatLine("difference",
                        fmt::format("median {}, 99.9th percentile {}", formatNumber(differences.medianDifference),

@@ -35,12 +35,12 @@ struct PairedDifferences {
     std::uint64_t litPixels = 0;
     std::uint64_t differentSignatures = 0; ///< lit pixels where some path took another branch, whatever the difference
     std::uint64_t withinTolerance = 0;
-    std::uint64_t otherBranch = 0;  ///< outside the tolerance, and the signatures differ
-    std::uint64_t rounding = 0;     ///< outside on the same branches, but single precision on the CPU errs there as well
-    std::uint64_t unexplained = 0;  ///< outside the tolerance without either reason
-    double medianDifference = 0.0;  ///< of the relative differences of lit pixels
-    double difference999 = 0.0;     ///< their 99.9th percentile
-    Interval luminanceBias;         ///< relative bias of mean luminance, paired
+    std::uint64_t otherBranch = 0; ///< outside the tolerance, and the signatures differ
+    std::uint64_t rounding = 0;    ///< outside on the same branches, but single precision on the CPU errs there as well
+    std::uint64_t unexplained = 0; ///< outside the tolerance without either reason
+    double medianDifference = 0.0; ///< of the relative differences of lit pixels
+    double difference999 = 0.0;    ///< their 99.9th percentile
+    Interval luminanceBias;        ///< relative bias of mean luminance, paired
     std::vector<PairedPixel> worst; ///< unexplained ones first, then by relative difference; at most ten
 };
 
@@ -53,8 +53,8 @@ struct PairedDifferences {
 struct PairedOptions {
     double tolerance = 1e-3; ///< relative difference that rounding may cause in any pixel
     /// The reference's film in single precision, if the film under test is: some paths (between spheres, say) amplify
-    /// rounding thousandfold, and then two correct programs differ as much from double as from each other. A pixel whose
-    /// difference is at most kRoundingFactor times that of this film is explained by rounding.
+    /// rounding thousandfold, and then two correct programs differ as much from double as from each other. A pixel
+    /// whose difference is at most kRoundingFactor times that of this film is explained by rounding.
     const Film* singlePrecision = nullptr;
 };
 
@@ -64,7 +64,8 @@ inline constexpr double kRoundingFactor = 100.0;
 
 /// Compares the films of one scene, seed and range of samples, rendered with path signatures. Throws Error (bad input)
 /// if their sizes or sample counts differ.
-[[nodiscard]] PairedDifferences pairedDifferences(const Film& film, const Film& reference, const PairedOptions& options = {});
+[[nodiscard]] PairedDifferences pairedDifferences(const Film& film, const Film& reference,
+                                                  const PairedOptions& options = {});
 
 [[nodiscard]] std::string toText(const PairedDifferences& differences);
 [[nodiscard]] nlohmann::ordered_json toJson(const PairedDifferences& differences);

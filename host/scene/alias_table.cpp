@@ -41,7 +41,8 @@ AliasTable buildAliasTable(std::span<const double> weights) {
 
     std::vector<std::uint64_t> shares = integerShares(weights, total);
     table.pdf.reserve(shares.size());
-    for (const std::uint64_t share : shares) table.pdf.push_back(static_cast<double>(share) / static_cast<double>(total));
+    for (const std::uint64_t share : shares)
+        table.pdf.push_back(static_cast<double>(share) / static_cast<double>(total));
 
     shares.resize(binCount, 0);
     table.bins.resize(binCount);

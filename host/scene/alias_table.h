@@ -8,8 +8,8 @@
 namespace isolux {
 
 /// Walker's alias method (Walker 1977; Vose 1991) in integers. There are 2^m bins. A first random word's top m bits
-/// choose the bin; a second word w keeps the bin's own item if w < threshold or alias == the bin itself, else its alias.
-/// Every probability is therefore a multiple of 2^-(32+m), and `pdf` is that rational, rounded once.
+/// choose the bin; a second word w keeps the bin's own item if w < threshold or alias == the bin itself, else its
+/// alias. Every probability is therefore a multiple of 2^-(32+m), and `pdf` is that rational, rounded once.
 struct AliasTable {
     struct Bin {
         std::uint32_t threshold = 0;
@@ -25,7 +25,8 @@ struct AliasTable {
 [[nodiscard]] AliasTable buildAliasTable(std::span<const double> weights);
 
 /// The item that two random words choose.
-[[nodiscard]] inline std::uint32_t sampleAliasTable(const AliasTable& table, std::uint32_t binWord, std::uint32_t aliasWord) {
+[[nodiscard]] inline std::uint32_t sampleAliasTable(const AliasTable& table, std::uint32_t binWord,
+                                                    std::uint32_t aliasWord) {
     const std::uint32_t bin = table.bits == 0 ? 0 : binWord >> (32 - table.bits);
     return aliasWord < table.bins[bin].threshold ? bin : table.bins[bin].alias;
 }

@@ -34,7 +34,9 @@ LightTable buildLightTable(const Scene& scene) {
         const Mesh& mesh = scene.meshes[instance.mesh];
         const Material& material = scene.materials[mesh.material];
         for (const auto& triangle : mesh.triangles)
-            consider(material.emits() ? emittedPower(material, triangleArea(instance.worldFromObject, mesh, triangle), false) : 0.0);
+            consider(material.emits()
+                         ? emittedPower(material, triangleArea(instance.worldFromObject, mesh, triangle), false)
+                         : 0.0);
     }
     for (const Sphere& sphere : scene.spheres) {
         const Material& material = scene.materials[sphere.material];

@@ -17,12 +17,12 @@ enum class PathSignatures { off, on };
 struct RenderSettings {
     std::uint32_t width = 512;
     std::uint32_t height = 384;
-    std::uint32_t camera = 0;                   ///< index into Scene::cameras
+    std::uint32_t camera = 0; ///< index into Scene::cameras
     std::uint64_t seed = 0;
-    std::uint32_t firstSample = 0;              ///< samples firstSample ... firstSample + sampleCount - 1 are rendered
-    std::uint32_t sampleCount = 64;             ///< samples a pixel
-    std::uint32_t maxDepth = kUnlimitedDepth;   ///< bounces: 0 emitted light alone, 1 direct light, ...
-    std::uint32_t rouletteStart = 4;            ///< the first bounce that roulette may prevent
+    std::uint32_t firstSample = 0;            ///< samples firstSample ... firstSample + sampleCount - 1 are rendered
+    std::uint32_t sampleCount = 64;           ///< samples a pixel
+    std::uint32_t maxDepth = kUnlimitedDepth; ///< bounces: 0 emitted light alone, 1 direct light, ...
+    std::uint32_t rouletteStart = 4;          ///< the first bounce that roulette may prevent
 };
 
 } // namespace isolux

@@ -67,7 +67,8 @@ void validate(const Scene& scene) {
     for (const Material& material : scene.materials) validateMaterial(material);
     for (const Mesh& mesh : scene.meshes) validateMesh(mesh, scene.materials.size());
     for (const Instance& instance : scene.instances) {
-        if (instance.mesh >= scene.meshes.size()) throwBadInput(fmt::format("node '{}'", instance.name), "its mesh does not exist");
+        if (instance.mesh >= scene.meshes.size())
+            throwBadInput(fmt::format("node '{}'", instance.name), "its mesh does not exist");
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row)
                 if (!std::isfinite(instance.worldFromObject[column][row]))

@@ -35,17 +35,17 @@ struct RenderParameters {
     vec4 cameraRight;    // scaled by aspect * tan(yfov / 2)
     vec4 cameraUp;       // scaled by tan(yfov / 2)
     vec4 cameraForward;
-    uvec4 imageSeed;     // width, height, seed low, seed high
-    uvec4 depthLights;   // maximum depth, roulette start, bits of the alias table, number of lights
-    uvec4 tableOffsets;  // first word of materials, lights, light bins in the tables buffer; w: words in the tables
-    uvec4 sceneCounts;   // nodes, primitives, materials; w unused
+    uvec4 imageSeed;    // width, height, seed low, seed high
+    uvec4 depthLights;  // maximum depth, roulette start, bits of the alias table, number of lights
+    uvec4 tableOffsets; // first word of materials, lights, light bins in the tables buffer; w: words in the tables
+    uvec4 sceneCounts;  // nodes, primitives, materials; w unused
 };
 ISOLUX_CHECK_SIZE(RenderParameters, 128);
 
 // Changes with every dispatch.
 struct DispatchParameters {
-    uvec4 tile;   // first pixel x, y; width, height in pixels
-    uvec4 batch;  // first sample, samples, step budget, 1 if the paths are to be started afresh
+    uvec4 tile;  // first pixel x, y; width, height in pixels
+    uvec4 batch; // first sample, samples, step budget, 1 if the paths are to be started afresh
 };
 ISOLUX_CHECK_SIZE(DispatchParameters, 32);
 

@@ -39,7 +39,8 @@ TEST_F(Determinism, HalvesAverageToTheWhole) {
         EXPECT_EQ(joined.pixels[i].hitCount, whole.pixels[i].hitCount);
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(joined.pixels[i].mean[c], whole.pixels[i].mean[c], 1e-12 * (1.0 + whole.pixels[i].mean[c]));
-            EXPECT_NEAR(joined.pixels[i].variance()[c], whole.pixels[i].variance()[c], 1e-10 * (1.0 + whole.pixels[i].variance()[c]));
+            EXPECT_NEAR(joined.pixels[i].variance()[c], whole.pixels[i].variance()[c],
+                        1e-10 * (1.0 + whole.pixels[i].variance()[c]));
         }
     }
 }
@@ -62,10 +63,12 @@ TEST_F(Determinism, LeavingOutWhatASceneDoesNotNeedChangesNothing) {
     RenderSettings shallow = imageSettings(40, 40, 16);
     shallow.maxDepth = 3; // roulette cannot be reached
     const RenderSettings deep = imageSettings(40, 40, 16);
-    const std::vector<std::pair<Scene, RenderSettings>> cases{
-        {loadScene(projectScene("cornell_box")), deep},     {loadScene(projectScene("cornell_box")), shallow},
-        {loadScene(projectScene("cornell_spheres")), deep}, {loadScene(projectScene("furnace")), deep},
-        {oneLight, deep},                                   {furnaceScene(Vec3d(0.5), Vec3d(0.0)), shallow}};
+    const std::vector<std::pair<Scene, RenderSettings>> cases{{loadScene(projectScene("cornell_box")), deep},
+                                                              {loadScene(projectScene("cornell_box")), shallow},
+                                                              {loadScene(projectScene("cornell_spheres")), deep},
+                                                              {loadScene(projectScene("furnace")), deep},
+                                                              {oneLight, deep},
+                                                              {furnaceScene(Vec3d(0.5), Vec3d(0.0)), shallow}};
     std::size_t leftOut = 0;
     for (const auto& [scene, settings] : cases) {
         const SceneFeatures needed = findFeatures(scene, settings);

@@ -71,7 +71,8 @@ private:
             const shared::IntersectParameters parameters{
                 {0, rayCount, begin, method == Method::bruteForce ? std::min(begin + step, primitives) : primitives}};
             runner.run([&](VkCommandBuffer commands) {
-                bound.record(commands, std::as_bytes(std::span(&parameters, 1)), (rayCount + kWorkgroupSize - 1) / kWorkgroupSize);
+                bound.record(commands, std::as_bytes(std::span(&parameters, 1)),
+                             (rayCount + kWorkgroupSize - 1) / kWorkgroupSize);
             });
             if (method == Method::bvh) break;
         }
@@ -172,9 +173,11 @@ class BvhAgainstBruteForce : public Intersection {
 protected:
     void expectSameHits(const std::filesystem::path& file, double totalTests) {
         const PackedScene scene = packScene(loadScene(file));
-        const auto count = static_cast<std::size_t>(std::min(1e6, totalTests / static_cast<double>(scene.primitives.size())));
+        const auto count =
+            static_cast<std::size_t>(std::min(1e6, totalTests / static_cast<double>(scene.primitives.size())));
         const Rays rays = RayMaker(scene).make(count);
-        const Disagreement result = disagreement(trace(scene, rays, Method::bvh), trace(scene, rays, Method::bruteForce));
+        const Disagreement result =
+            disagreement(trace(scene, rays, Method::bvh), trace(scene, rays, Method::bruteForce));
         EXPECT_EQ(result.count, 0u) << file << ": of " << count << " rays, " << result.hits << " hits";
         EXPECT_EQ(result.unfinished, 0u) << file;
         EXPECT_GT(result.hits, count / 20) << file;

@@ -20,8 +20,8 @@ protected:
         RenderOptions options;
         options.signatures = PathSignatures::on;
         const Film film = render(scene, settings, options);
-        const Film reference = renderReference(
-            scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, {});
+        const Film reference =
+            renderReference(scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, {});
         const PairedDifferences differences = pairedDifferences(film, reference, {kTolerance, nullptr});
         if (differences.differentSignatures == 0) {
             EXPECT_EQ(film.rays, reference.rays);
@@ -36,14 +36,17 @@ protected:
         SCOPED_TRACE(toText(differences));
         EXPECT_GT(differences.litPixels, settings.width * settings.height / 10);
         EXPECT_EQ(differences.unexplained, 0u);
-        EXPECT_GE(static_cast<double>(differences.withinTolerance), agreement * static_cast<double>(differences.litPixels));
+        EXPECT_GE(static_cast<double>(differences.withinTolerance),
+                  agreement * static_cast<double>(differences.litPixels));
         EXPECT_LT(std::abs(differences.luminanceBias.estimate), kMaxRelativeBias);
     }
 };
 
 TEST_F(Paired, CornellBox) { expectAgreement(loadScene(projectScene("cornell_box")), imageSettings(256, 256, 16)); }
 
-TEST_F(Paired, CornellSpheres) { expectAgreement(loadScene(projectScene("cornell_spheres")), imageSettings(256, 256, 16)); }
+TEST_F(Paired, CornellSpheres) {
+    expectAgreement(loadScene(projectScene("cornell_spheres")), imageSettings(256, 256, 16));
+}
 
 TEST_F(Paired, Furnace) { expectAgreement(loadScene(projectScene("furnace")), imageSettings(64, 64, 32)); }
 

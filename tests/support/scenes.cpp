@@ -12,7 +12,8 @@ std::filesystem::path projectScene(const std::string& name) {
 std::filesystem::path blobScene() {
     const std::filesystem::path path = std::filesystem::path(ISOLUX_SOURCE_DIR) / "build" / "scenes" / "blob.glb";
     if (!std::filesystem::exists(path))
-        throw std::runtime_error(path.string() + " is missing; make it with: tools/make_scenes --blob " + path.string());
+        throw std::runtime_error(path.string() + " is missing; make it with: tools/make_scenes --blob " +
+                                 path.string());
     return path;
 }
 
@@ -32,7 +33,8 @@ Scene furnaceScene(const Vec3d& albedo, const Vec3d& emission) {
     Mesh box;
     box.name = "box";
     for (int i = 0; i < 8; ++i)
-        box.positions.emplace_back((i & 1) != 0 ? 1.0f : -1.0f, (i & 2) != 0 ? 1.0f : -1.0f, (i & 4) != 0 ? 1.0f : -1.0f);
+        box.positions.emplace_back((i & 1) != 0 ? 1.0f : -1.0f, (i & 2) != 0 ? 1.0f : -1.0f,
+                                   (i & 4) != 0 ? 1.0f : -1.0f);
     box.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
                      {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
     scene.meshes = {box};

@@ -23,7 +23,8 @@ std::vector<double> encodedProbabilities(const AliasTable& table, std::size_t co
         if (alias != bin) shares[alias] += 4294967296.0L - own;
     }
     std::vector<double> result;
-    for (const long double share : shares) result.push_back(static_cast<double>(share / 4294967296.0L / table.bins.size()));
+    for (const long double share : shares)
+        result.push_back(static_cast<double>(share / 4294967296.0L / table.bins.size()));
     return result;
 }
 
@@ -76,8 +77,10 @@ TEST(AliasTable, SampledFrequenciesMatch) {
     double chiSquare = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const double expected = kSamples * weights[i] / 16.0;
-        if (expected == 0.0) EXPECT_EQ(counts[i], 0);
-        else chiSquare += (counts[i] - expected) * (counts[i] - expected) / expected;
+        if (expected == 0.0)
+            EXPECT_EQ(counts[i], 0);
+        else
+            chiSquare += (counts[i] - expected) * (counts[i] - expected) / expected;
     }
     EXPECT_LT(chiSquare, 18.47); // 4 degrees of freedom, p = 0.001
 }
@@ -89,7 +92,8 @@ TEST(AliasTable, NothingToChoose) {
 
 TEST(LightTable, ChoosesByPowerAndSkipsWhatHasNoArea) {
     Scene scene;
-    scene.materials = {{"wall", Vec3d(0.5), Vec3d(0.0), false}, {"lamp", Vec3d(0.0), Vec3d(2.0), false},
+    scene.materials = {{"wall", Vec3d(0.5), Vec3d(0.0), false},
+                       {"lamp", Vec3d(0.0), Vec3d(2.0), false},
                        {"panel", Vec3d(0.0), Vec3d(2.0), true}};
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};

@@ -25,7 +25,8 @@ std::vector<Box3f> randomBoxes(std::size_t count, float size, unsigned seed) {
 }
 
 bool contains(const Box3f& outer, const Box3f& inner) {
-    return glm::all(glm::lessThanEqual(outer.lower, inner.lower)) && glm::all(glm::greaterThanEqual(outer.upper, inner.upper));
+    return glm::all(glm::lessThanEqual(outer.lower, inner.lower)) &&
+           glm::all(glm::greaterThanEqual(outer.upper, inner.upper));
 }
 
 /// Every primitive in exactly one leaf, every box around what is below it, sizes and depth within their limits.
@@ -128,8 +129,8 @@ INSTANTIATE_TEST_SUITE_P(Boxes, BvhCases,
                          ::testing::Values(randomBoxes(1, 0.1f, 1), randomBoxes(2, 0.1f, 2), randomBoxes(5, 0.1f, 3),
                                            randomBoxes(1000, 0.05f, 4), randomBoxes(50'000, 0.02f, 5),
                                            randomBoxes(3000, 2.0f, 6), chain(200),
-                                           repeated(20'000, Vec3f(0.25f), Vec3f(0.5f)),           // all centres equal
-                                           repeated(3000, Vec3f(0.1f), Vec3f(0.1f)),              // points
+                                           repeated(20'000, Vec3f(0.25f), Vec3f(0.5f)), // all centres equal
+                                           repeated(3000, Vec3f(0.1f), Vec3f(0.1f)),    // points
                                            repeated(3000, Vec3f(0.0f, -1.0f, 0.0f), Vec3f(1.0f, -1.0f, 1.0f)), // flat
                                            repeated(9, Vec3f(-1e30f), Vec3f(1e30f)),
                                            repeated(9, Vec3f(1e-38f), Vec3f(3e-38f))));

@@ -16,7 +16,8 @@ TEST(Philox, KnownAnswers) {
 }
 
 TEST(Philox, UnitNumbersAreNeverOneAndTheSameInBothPrecisions) {
-    for (const std::uint32_t word : {0u, 1u, 0xffu, 0x100u, 0x80000000u, 0xffffff00u, 0xffffff80u, 0xfffffffeu, 0xffffffffu}) {
+    for (const std::uint32_t word :
+         {0u, 1u, 0xffu, 0x100u, 0x80000000u, 0xffffff00u, 0xffffff80u, 0xfffffffeu, 0xffffffffu}) {
         EXPECT_LT(unitReal<float>(word), 1.0f);
         EXPECT_GE(unitReal<float>(word), 0.0f);
         EXPECT_EQ(static_cast<double>(unitReal<float>(word)), unitReal<double>(word));
@@ -26,9 +27,10 @@ TEST(Philox, UnitNumbersAreNeverOneAndTheSameInBothPrecisions) {
 
 TEST(Philox, IndicesChangeEveryWord) {
     const PhiloxBlock base = randomBlock(7, 10, 20, 30, 40);
-    for (const PhiloxBlock& other : {randomBlock(8, 10, 20, 30, 40), randomBlock(7, 11, 20, 30, 40), randomBlock(7, 10, 21, 30, 40),
-                                     randomBlock(7, 10, 20, 31, 40), randomBlock(7, 10, 20, 30, 41),
-                                     randomBlock(7 + (std::uint64_t{1} << 32), 10, 20, 30, 40)})
+    for (const PhiloxBlock& other :
+         {randomBlock(8, 10, 20, 30, 40), randomBlock(7, 11, 20, 30, 40), randomBlock(7, 10, 21, 30, 40),
+          randomBlock(7, 10, 20, 31, 40), randomBlock(7, 10, 20, 30, 41),
+          randomBlock(7 + (std::uint64_t{1} << 32), 10, 20, 30, 40)})
         for (std::size_t i = 0; i < 4; ++i) EXPECT_NE(base[i], other[i]);
 }
 

@@ -48,7 +48,7 @@ TEST(Schedule, BudgetsStayBelowTheLoopLimitOfEveryDriver) {
 }
 
 TEST(Schedule, BudgetFollowsTheClock) {
-    EXPECT_EQ(nextStepBudget(1000, 0.2, 0.1, 7000), 500u);   // too long: shrinks at once
+    EXPECT_EQ(nextStepBudget(1000, 0.2, 0.1, 7000), 500u);    // too long: shrinks at once
     EXPECT_EQ(nextStepBudget(1000, 0.001, 0.1, 7000), 2000u); // too short: doubles at most
     EXPECT_EQ(nextStepBudget(1000, 0.0, 0.1, 7000), 2000u);
     EXPECT_EQ(nextStepBudget(6000, 0.001, 0.1, 7000), 7000u);

@@ -28,7 +28,8 @@ void expectLayout(const SpirvModule& module, const std::string& name, const Memb
     }
 }
 
-#define MEMBER(type, member) {#member, offsetof(shared::type, member)}
+#define MEMBER(type, member)                                                                                           \
+    { #member, offsetof(shared::type, member) }
 
 TEST(StructLayout, PathKernel) {
     const SpirvModule module = reflectSpirv(kernels::path);
@@ -49,15 +50,18 @@ TEST(StructLayout, PathKernel) {
                  sizeof(shared::RenderParameters));
     expectLayout(module, "DispatchParameters", {MEMBER(DispatchParameters, tile), MEMBER(DispatchParameters, batch)},
                  sizeof(shared::DispatchParameters));
-    expectLayout(module, "CompletionRecord", {MEMBER(CompletionRecord, finishedLanes)}, sizeof(shared::CompletionRecord));
+    expectLayout(module, "CompletionRecord", {MEMBER(CompletionRecord, finishedLanes)},
+                 sizeof(shared::CompletionRecord));
 }
 
 TEST(StructLayout, IntersectKernel) {
     const SpirvModule module = reflectSpirv(kernels::intersect);
     expectLayout(module, "RayRecord", {MEMBER(RayRecord, originDistance), MEMBER(RayRecord, direction)},
                  sizeof(shared::RayRecord));
-    expectLayout(module, "HitRecord", {MEMBER(HitRecord, distance), MEMBER(HitRecord, primitive)}, sizeof(shared::HitRecord));
-    expectLayout(module, "IntersectParameters", {MEMBER(IntersectParameters, range)}, sizeof(shared::IntersectParameters));
+    expectLayout(module, "HitRecord", {MEMBER(HitRecord, distance), MEMBER(HitRecord, primitive)},
+                 sizeof(shared::HitRecord));
+    expectLayout(module, "IntersectParameters", {MEMBER(IntersectParameters, range)},
+                 sizeof(shared::IntersectParameters));
 }
 
 #undef MEMBER

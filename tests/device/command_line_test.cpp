@@ -1,0 +1,167 @@
+// The program as users run it: exit codes, files, messages, interrupts.
+#include "film/image.h"
+#include "support/scenes.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace isolux::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+    int exitCode = -1;
+    std::string output; ///< standard output and error together
+};
+
+class CommandLine : public ::testing::Test {
+protected:
+    CommandLine() : folder_(fs::temp_directory_path() / ("isolux-cli-" + std::to_string(::getpid()))) {
+        fs::create_directories(folder_);
+    }
+    ~CommandLine() override { fs::remove_all(folder_); }
+
+    [[nodiscard]] static Result run(const std::string& arguments, const std::string& prefix = "") {
+        const std::string command = prefix + "'" + ISOLUX_BINARY_DIR + "/isolux' " + arguments + " 2>&1";
+        std::FILE* pipe = ::popen(command.c_str(), "r");
+        Result result;
+        std::array<char, 4096> buffer;
+        while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+            result.output.append(buffer.data(), count);
+        const int status = ::pclose(pipe);
+        result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        return result;
+    }
+
+    [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] static std::string scene(const std::string& name = "cornell_box") {
+        return "'" + projectScene(name).string() + "'";
+    }
+    [[nodiscard]] std::size_t fileCount() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(CommandLine, RendersImagesWithMetadataAndReport) {
+    const Result result =
+        run("render " + scene() + " -o " + file("a.exr") + " -o " + file("a.png") + " --json " + file("a.json") +
+            " --width 32 --spp 8 --seed 5 --first-sample 3 --max-depth 4 --validation");
+    ASSERT_EQ(result.exitCode, 0) << result.output;
+    const Image image = readImage(file("a.exr"));
+    EXPECT_EQ(image.width, 32u);
+    EXPECT_EQ(image.height, 32u) << "from the camera's aspect ratio";
+    for (const char* channel :
+         {"R", "G", "B", "A", "variance.R", "variance.G", "variance.B", "variance.Y", "samples.Y"})
+        EXPECT_TRUE(image.channel(channel)) << channel;
+    EXPECT_EQ(metadataUnsigned(image.metadata, "isolux/seed"), 5u);
+    EXPECT_EQ(metadataUnsigned(image.metadata, "isolux/sampleFirst"), 3u);
+    EXPECT_EQ(metadataUnsigned(image.metadata, "isolux/sampleCount"), 8u);
+    EXPECT_EQ(readImage(file("a.png")).width, 32u);
+    std::ifstream stream(file("a.json"));
+    const nlohmann::json report = nlohmann::json::parse(stream);
+    EXPECT_EQ(report.at("schema"), 1);
+    EXPECT_EQ(fileCount(), 3u) << "no temporary files are left";
+}
+
+TEST_F(CommandLine, QuietPrintsNothing) {
+    const Result result = run("render " + scene() + " -q --width 8 --spp 1 -o " + file("q.png"));
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.output, "");
+}
+
+TEST_F(CommandLine, BackendsAgreeAndComparisonsHaveLimits) {
+    const std::string options = " -q --width 32 --spp 16 ";
+    ASSERT_EQ(run("render " + scene() + options + "-o " + file("device.exr")).exitCode, 0);
+    ASSERT_EQ(run("render " + scene() + options + "--backend reference -o " + file("double.exr")).exitCode, 0);
+    ASSERT_EQ(
+        run("render " + scene() + options + "--backend reference --precision float -o " + file("float.exr")).exitCode,
+        0);
+    ASSERT_EQ(run("render " + scene() + options + "--max-depth 1 -o " + file("direct.exr")).exitCode, 0);
+    const std::string limits = " --max-relative-bias 1e-4 --max-rel-mse 1e-4";
+    EXPECT_EQ(run("compare " + file("device.exr") + " " + file("double.exr") + limits).exitCode, 0);
+    EXPECT_EQ(run("compare " + file("float.exr") + " " + file("double.exr") + limits).exitCode, 0);
+    const Result biased =
+        run("compare --json " + file("direct.exr") + " " + file("double.exr") + " --max-relative-bias 0.01");
+    EXPECT_EQ(biased.exitCode, 1);
+    EXPECT_EQ(nlohmann::json::parse(biased.output).at("schema"), 1);
+}
+
+TEST_F(CommandLine, VerifyAgrees) {
+    const Result result = run("verify -q " + scene("cornell_spheres") + " --width 48 --spp 8");
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+    const Result json = run("verify -q --json " + scene() + " --width 16 --spp 4");
+    EXPECT_EQ(json.exitCode, 0);
+    EXPECT_TRUE(nlohmann::json::parse(json.output).at("passed"));
+}
+
+TEST_F(CommandLine, BadUsageAndInputExitWithTwo) {
+    const std::string output = " -o " + file("x.png");
+    EXPECT_EQ(run("").exitCode, 2);
+    EXPECT_EQ(run("frobnicate").exitCode, 2);
+    EXPECT_EQ(run("render " + scene()).exitCode, 2) << "no output";
+    EXPECT_EQ(run("render " + scene() + " --spp many" + output).exitCode, 2);
+    EXPECT_EQ(run("render " + scene() + " --spp 0" + output).exitCode, 2);
+    EXPECT_EQ(run("render " + scene() + " --width 0" + output).exitCode, 2);
+    EXPECT_EQ(run("render " + scene() + " --first-sample 4294967295 --spp 2" + output).exitCode, 2);
+    EXPECT_EQ(run("render " + scene() + " -o " + file("x.tiff")).exitCode, 2);
+    EXPECT_EQ(run("render " + scene() + " -o " + file("missing/x.png")).exitCode, 2);
+    EXPECT_EQ(run("render " + scene() + " --device nonsense" + output).exitCode, 2);
+    EXPECT_EQ(run("render " + file("missing.glb") + output).exitCode, 2);
+    EXPECT_EQ(run("compare " + file("missing.exr") + " " + file("missing.exr")).exitCode, 2);
+    EXPECT_EQ(fileCount(), 0u);
+    const Result missing = run("render " + file("missing.glb") + output);
+    EXPECT_NE(missing.output.find("missing.glb"), std::string::npos);
+    EXPECT_EQ(std::count(missing.output.begin(), missing.output.end(), '\n'), 1) << missing.output;
+}
+
+TEST_F(CommandLine, HelpNamesEveryOption) {
+    EXPECT_EQ(run("--help").exitCode, 0);
+    EXPECT_EQ(run("--version").exitCode, 0);
+    const Result help = run("render --help");
+    EXPECT_EQ(help.exitCode, 0);
+    for (const char* option : {"--output", "--spp", "--first-sample", "--width", "--height", "--seed", "--max-depth",
+                               "--backend", "--precision", "--device", "--quiet", "--json", "Examples"})
+        EXPECT_NE(help.output.find(option), std::string::npos) << option;
+}
+
+TEST_F(CommandLine, WithoutADriverTheReferenceStillRenders) {
+    const std::string noDriver = "VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent ";
+    const Result result = run("render " + scene() + " -q --width 8 --spp 1 -o " + file("x.png"), noDriver);
+    EXPECT_EQ(result.exitCode, 1) << result.output;
+    EXPECT_NE(result.output.find("driver"), std::string::npos) << "the message names the remedy: " << result.output;
+    EXPECT_EQ(
+        run("render " + scene() + " -q --backend reference --width 8 --spp 1 -o " + file("x.png"), noDriver).exitCode,
+        0);
+}
+
+/// Ctrl-C after a while: what is done is written and says how much it is; a file with more samples is kept.
+TEST_F(CommandLine, InterruptsKeepWhatIsDone) {
+    const std::string endless = "render " + scene() + " --width 128 --spp 1000000 -o ";
+    const std::string interrupt = "timeout --preserve-status --signal INT 3 ";
+    const Result first = run(endless + file("a.exr"), interrupt);
+    EXPECT_EQ(first.exitCode, 130) << first.output;
+    const auto samples = metadataUnsigned(readImage(file("a.exr")).metadata, "isolux/sampleCount");
+    ASSERT_TRUE(samples);
+    EXPECT_GT(*samples, 0u);
+    EXPECT_LT(*samples, 1'000'000u);
+    // A whole render of more samples is worth more than what the next interruption leaves.
+    ASSERT_EQ(run("render " + scene() + " -q --width 8 --spp 100000 -o " + file("b.exr")).exitCode, 0);
+    EXPECT_EQ(run(endless + file("b.exr"), interrupt).exitCode, 130);
+    EXPECT_EQ(metadataUnsigned(readImage(file("b.exr")).metadata, "isolux/sampleCount"), 100'000u);
+    EXPECT_LT(*metadataUnsigned(readImage(file("b.partial.exr")).metadata, "isolux/sampleCount"), 100'000u);
+}
+
+} // namespace
+} // namespace isolux::test
