@@ -19,7 +19,9 @@ enum Op : std::uint32_t {
     opTypePointer = 32,
     opVariable = 59,
     opDecorate = 71,
-    opMemberDecorate = 72
+    opMemberDecorate = 72,
+    opLoopMerge = 246,
+    opSwitch = 251
 };
 enum Decoration : std::uint32_t { arrayStride = 6, binding = 33, offset = 35 };
 enum StorageClass : std::uint32_t { uniformConstant = 0, uniform = 2, storageBuffer = 12 };
@@ -94,7 +96,8 @@ SpirvModule reflectSpirv(std::span<const std::uint32_t> words) {
         const std::size_t count = words[i] >> 16;
         if (count == 0 || i + count > words.size()) throwFailure("SPIR-V", "truncated module");
         reader.read(words[i] & 0xFFFFu, words.subspan(i + 1, count - 1));
-        ++module.instructionCount;
+        module.loopCount += (words[i] & 0xFFFFu) == opLoopMerge ? 1 : 0;
+        module.switchCount += (words[i] & 0xFFFFu) == opSwitch ? 1 : 0;
         i += count;
     }
     for (const Reader::Variable& variable : reader.variables) {

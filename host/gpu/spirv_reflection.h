@@ -25,7 +25,8 @@ struct SpirvModule {
     std::vector<SpirvBinding> bindings;                      ///< of descriptor set 0, by number
     std::map<std::string, std::vector<SpirvMember>> structs; ///< members that have offsets, by struct name
     std::map<std::string, std::uint32_t> arrayStrides;       ///< bytes from element to element of arrays of a struct
-    std::size_t instructionCount = 0;
+    std::size_t loopCount = 0;
+    std::size_t switchCount = 0; ///< SPIRV-Tools turns early returns into switches, and Mesa those into loops
 };
 
 /// Reads a module that SPIRV-Tools has validated. Throws Error on anything it cannot make sense of.

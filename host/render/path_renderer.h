@@ -17,7 +17,8 @@
 namespace isolux {
 
 struct RenderOptions {
-    double dispatchSeconds = 0.1; ///< how long a dispatch should last, about; watchdogs end one after a second or two
+    /// How long a dispatch should last, about: with its scatter below a tenth of a second. Watchdogs end one after two.
+    double dispatchSeconds = 0.07;
     ReadPath readPath = ReadPath::automatic;
     PathSignatures signatures = PathSignatures::off;
     std::optional<SceneFeatures> features; ///< instead of what the scene needs (for tests and benchmarks)

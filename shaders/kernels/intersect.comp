@@ -12,9 +12,7 @@ layout(set = 0, binding = 13, std430) readonly buffer RayBuffer { RayRecord rays
 layout(set = 0, binding = 14, std430) buffer HitBuffer { HitRecord hits[]; };
 layout(push_constant) uniform Parameters { IntersectParameters parameters; };
 
-void main() {
-    uint index = parameters.range.x + gl_GlobalInvocationID.x;
-    if (index >= parameters.range.y) return;
+void trace(uint index) {
     RayRecord record = rays[index];
     Query query = Query(Ray(record.originDistance.xyz, record.direction.xyz), kNearestHit, kNone, kNone);
     RayTransform transform = transformFor(query.ray);
@@ -29,9 +27,14 @@ void main() {
         for (uint i = parameters.range.z; i < parameters.range.w; ++i) testPrimitive(i, query, transform, state);
         state.stackCount = 0u;
     } else {
-        uint budget = 8000u;
+        uint budget = 7000u;
         traverse(query, transform, state, budget, overflows);
     }
     hits[index].distance = vec4(state.distance, 0.0, 0.0, 0.0);
     hits[index].primitive = uvec4(state.primitive, state.stackCount == 0u && overflows == 0u ? 1u : 0u, 0u, 0u);
+}
+
+void main() {
+    uint index = parameters.range.x + gl_GlobalInvocationID.x;
+    if (index < parameters.range.y) trace(index);
 }

@@ -13,7 +13,7 @@ struct RayRecord {
 ISOLUX_CHECK_SIZE(RayRecord, 32);
 
 struct HitRecord {
-    vec4 distance;   // x: distance, undefined without a hit; y, z: barycentric coordinates of p0, p1; w unused
+    vec4 distance;   // x: distance, undefined without a hit; y, z, w unused
     uvec4 primitive; // x: primitive index or kNone; y: 1 once the traversal is finished; z, w unused
 };
 ISOLUX_CHECK_SIZE(HitRecord, 32);

@@ -19,7 +19,7 @@ TEST_F(Determinism, DispatchesAndTilesDoNotChangeABit) {
     // So short that paths are stopped in the middle of traversals, again and again.
     options.dispatchSeconds = 1e-6;
     EXPECT_EQ(differingPixels(whole, render(scene, settings, options)), 0u);
-    options.dispatchSeconds = 0.1;
+    options.dispatchSeconds = RenderOptions{}.dispatchSeconds;
     options.maxLanes = 256;
     EXPECT_EQ(differingPixels(whole, render(scene, settings, options)), 0u);
 }

@@ -66,6 +66,15 @@ TEST(StructLayout, IntersectKernel) {
 
 #undef MEMBER
 
+/// Some drivers end loops after 65,535 iterations over all loops of an invocation, and Mesa makes a loop of every early
+/// return. The step budget counts the path loop, the traversal, a leaf's primitives, and the stack's two copies.
+TEST(Loops, AreThoseThatTheStepBudgetCounts) {
+    EXPECT_EQ(reflectSpirv(kernels::path).loopCount, 5u);
+    EXPECT_EQ(reflectSpirv(kernels::path).switchCount, 0u);
+    EXPECT_EQ(reflectSpirv(kernels::intersect).loopCount, 3u);
+    EXPECT_EQ(reflectSpirv(kernels::intersect).switchCount, 0u);
+}
+
 TEST(SpirvReflection, RefusesWhatIsNotAModule) {
     EXPECT_THROW((void)reflectSpirv({}), std::exception);
     const std::array<std::uint32_t, 6> wrongMagic{1, 0, 0, 0, 0, 0};
