@@ -1,23 +1,12 @@
 #include "app/backends.h"
 
 #include "core/log.h"
+#include "core/stopwatch.h"
 #include "reference/reference.h"
 #include "render/path_renderer.h"
 
-#include <chrono>
-
 namespace isolux {
 namespace {
-
-class Stopwatch {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Stores the time a scope took, however it is left.
 class ScopedTimer {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -15,7 +16,7 @@ constexpr double kTerminalInterval = 0.1; // seconds between updates
 constexpr double kLogInterval = 5.0;
 
 std::string duration(double seconds) {
-    const auto whole = static_cast<long>(seconds + 0.5);
+    const auto whole = std::lround(seconds);
     if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{}:{:02} min", whole / 60, whole % 60);
     return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
@@ -37,14 +38,11 @@ ProgressCallback ProgressBar::callback() {
     };
 }
 
-double ProgressBar::elapsedSeconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
 void ProgressBar::update(double fraction) {
     if (display_ == ProgressDisplay::hidden) return;
-    const Clock::time_point now = Clock::now();
     const double interval = terminal_ ? kTerminalInterval : kLogInterval;
-    if (std::chrono::duration<double>(now - last_).count() < interval) return;
-    last_ = now;
+    if (elapsedSeconds() - lastUpdate_ < interval) return;
+    lastUpdate_ = elapsedSeconds();
     drawn_ = true;
     const std::string text = line(fraction);
     fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", text, terminal_ ? "" : "\n");

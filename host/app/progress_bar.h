@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/progress.h"
+#include "core/stopwatch.h"
 
-#include <chrono>
 #include <string>
 
 namespace isolux {
@@ -19,19 +19,18 @@ public:
 
     /// For renderers: draws, and says `no` once the user has asked to stop.
     [[nodiscard]] ProgressCallback callback();
-    [[nodiscard]] double elapsedSeconds() const;
+    [[nodiscard]] double elapsedSeconds() const { return watch_.seconds(); }
 
 private:
     void update(double fraction);
     [[nodiscard]] std::string line(double fraction) const;
 
-    using Clock = std::chrono::steady_clock;
     std::string label_;
     ProgressDisplay display_;
     bool terminal_;
     bool drawn_ = false;
-    Clock::time_point start_ = Clock::now();
-    Clock::time_point last_ = start_;
+    Stopwatch watch_;
+    double lastUpdate_ = 0.0; ///< seconds
 };
 
 } // namespace isolux

@@ -1,7 +1,8 @@
 #include "gpu/commands.h"
 
+#include "core/stopwatch.h"
+
 #include <array>
-#include <chrono>
 #include <cstring>
 
 namespace isolux {
@@ -53,10 +54,9 @@ double CommandRunner::run(const std::function<void(VkCommandBuffer)>& record) {
     begin();
     record(commands_);
     end();
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     submitAndWait();
-    const std::chrono::duration<double> hostTime = std::chrono::steady_clock::now() - start;
-    return elapsedSeconds(hostTime.count());
+    return elapsedSeconds(watch.seconds());
 }
 
 void CommandRunner::begin() const {

@@ -99,7 +99,7 @@ fs::path resolveUri(const std::string& uri, const fs::path& folder, const JsonRe
         where.fail(fmt::format("'{}' is an absolute path; copy the file beside the scene", printable(text)));
     std::error_code error;
     const fs::path root = fs::canonical(folder, error);
-    const fs::path path = error ? fs::path() : fs::weakly_canonical(root / relative, error);
+    fs::path path = error ? fs::path() : fs::weakly_canonical(root / relative, error);
     if (error) where.fail(fmt::format("'{}' cannot be resolved: {}", printable(text), error.message()));
     if (!contains(root, path))
         where.fail(

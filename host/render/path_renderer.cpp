@@ -1,13 +1,13 @@
 #include "render/path_renderer.h"
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 
 #include "kernels/spirv.h"
 #include "shared/interface.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstring>
 
 namespace isolux {
@@ -17,16 +17,6 @@ constexpr std::uint32_t kWorkgroupSize = 64;
 constexpr std::uint32_t kFirstBudget = 256;
 constexpr std::uint32_t kSoftwareLanes = 1u << 14;
 constexpr std::uint32_t kHardwareLanes = 1u << 18;
-
-class Stopwatch {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Vec3d toDouble(const glm::vec4& v) { return {v.x, v.y, v.z}; }
 

@@ -16,13 +16,13 @@ std::string formatPercent(double fraction) {
 }
 
 std::string formatInterval(const Interval& interval) {
-    const std::string estimate = formatNumber(interval.estimate);
+    std::string estimate = formatNumber(interval.estimate);
     if (!interval.known()) return estimate;
     return fmt::format("{} [{}, {}]", estimate, formatNumber(interval.low), formatNumber(interval.high));
 }
 
 std::string formatPercentInterval(const Interval& interval) {
-    const std::string estimate = formatPercent(interval.estimate);
+    std::string estimate = formatPercent(interval.estimate);
     if (!interval.known()) return estimate;
     return fmt::format("{} [{}, {}]", estimate, formatPercent(interval.low), formatPercent(interval.high));
 }

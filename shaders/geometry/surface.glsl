@@ -18,7 +18,7 @@ struct Surface {
     uint material;
     uint light; // or kNone
     uint id;
-    bool flat_; // a triangle: a ray that leaves it cannot meet it again
+    bool planar; // a triangle: a ray that leaves it cannot meet it again
 };
 
 // Point, error bound and normals of a triangle hit. Barycentric coordinates are found anew for the one triangle.
@@ -68,8 +68,8 @@ Surface surfaceAt(uint index, Ray ray, RayTransform transform, float distance, b
     surface.light = floatBitsToUint(primitive.p1Light.w);
     uint id = floatBitsToUint(primitive.p2Id.w);
     surface.id = id & ~kSphereBit;
-    surface.flat_ = !(spheres && (id & kSphereBit) != 0u);
-    if (surface.flat_) {
+    surface.planar = !(spheres && (id & kSphereBit) != 0u);
+    if (surface.planar) {
         triangleSurface(primitive, index, ray, transform, surface);
     } else {
         sphereSurface(primitive, ray, distance, surface);

@@ -175,7 +175,7 @@ void shadeHit(RayTransform transform) {
         bool shadow = lit && sampleDirect(surface, origin, material.baseColor.xyz);
         path.ending = scatter(surface, material.baseColor.xyz);
         path.ray.origin = origin;
-        path.leaves = surface.flat_ ? path.traversal.primitive : kNone;
+        path.leaves = surface.planar ? path.traversal.primitive : kNone;
         if (shadow) {
             path.phase = kPhaseShadow;
             path.traversal = beginTraversal(1.0, render.sceneCounts.x);

@@ -7,8 +7,10 @@
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
 
 namespace isolux::test {
 namespace {
@@ -72,6 +74,11 @@ TEST(DeviceStatistics, IndependentSeedsAgreeWithTheReference) {
     EXPECT_LT(normalQuantile(0.995) * standardError / level, 2e-3) << "the test is too weak to mean anything";
 }
 
+nlohmann::json readExpected(const std::string& name) {
+    std::ifstream stream(projectScene(name).parent_path() / "expected.json");
+    return nlohmann::json::parse(stream);
+}
+
 void expectFurnace(const Film& film, const Vec3d& expected) {
     Vec3d sum(0.0);
     Vec3d variance(0.0);
@@ -98,6 +105,32 @@ TEST(DeviceStatistics, FurnaceOnTheDevice) {
         settings.sampleCount = 128;
         expectFurnace(renderOnDevice(device, furnaceScene(a, e), settings), e / (Vec3d(1.0) - a));
         expectFurnace(renderReference(furnaceScene(a, e), settings, {}, {}), e / (Vec3d(1.0) - a));
+    }
+}
+
+/// The figures that the project's own scenes promise in their expected.json.
+TEST(DeviceStatistics, ProjectScenesShowTheirFigures) {
+    const Device device({});
+    for (const char* name : {"cornell_box", "cornell_spheres", "furnace"}) {
+        const nlohmann::json expected = readExpected(name);
+        const Scene scene = loadScene(projectScene(name));
+        RenderSettings settings;
+        settings.width = settings.height = 64;
+        settings.sampleCount = 128;
+        const auto vector = [&](const char* key) {
+            const auto& value = expected.at(key);
+            return Vec3d(value.at(0), value.at(1), value.at(2));
+        };
+        if (expected.contains("radiance")) {
+            expectFurnace(renderOnDevice(device, scene, settings), vector("radiance"));
+            continue;
+        }
+        // Without a bounce only lamps are seen, and each pixel that one fills shows its radiance.
+        settings.maxDepth = 0;
+        Vec3d brightest(0.0);
+        for (const PixelStatistics& pixel : renderOnDevice(device, scene, settings).pixels)
+            brightest = glm::max(brightest, pixel.mean);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(brightest[c], vector("lightRadiance")[c], 1e-5 * brightest[c]) << name;
     }
 }
 
