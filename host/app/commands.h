@@ -12,5 +12,6 @@ namespace isolux {
 void addRenderCommand(CLI::App& app, ExitCode& result);
 void addCompareCommand(CLI::App& app, ExitCode& result);
 void addVerifyCommand(CLI::App& app, ExitCode& result);
+void addDevicesCommand(CLI::App& app, ExitCode& result);
 
 } // namespace isolux

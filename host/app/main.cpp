@@ -25,6 +25,7 @@ int run(int argumentCount, char** arguments) {
     isolux::addRenderCommand(app, result);
     isolux::addCompareCommand(app, result);
     isolux::addVerifyCommand(app, result);
+    isolux::addDevicesCommand(app, result);
     try {
         app.parse(argumentCount, arguments);
     } catch (const CLI::Success& success) { // --help and --version

@@ -66,14 +66,39 @@ std::vector<VkPhysicalDevice> physicalDevices(VkInstance instance) {
     return devices;
 }
 
-std::optional<std::uint32_t> computeQueueFamily(VkPhysicalDevice device) {
+std::vector<VkQueueFamilyProperties> queueFamilies(VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    for (std::uint32_t i = 0; i < count; ++i)
+    return families;
+}
+
+std::optional<std::uint32_t> computeQueueFamily(VkPhysicalDevice device) {
+    const std::vector<VkQueueFamilyProperties> families = queueFamilies(device);
+    for (std::uint32_t i = 0; i < families.size(); ++i)
         if ((families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0) return i;
     return std::nullopt;
+}
+
+DeviceLimits limitsOf(VkPhysicalDevice device) {
+    auto subgroup =
+        vulkanStruct<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
+    auto properties = vulkanStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    properties.pNext = &subgroup;
+    vkGetPhysicalDeviceProperties2(device, &properties);
+    const VkPhysicalDeviceLimits& vulkan = properties.properties.limits;
+    DeviceLimits limits;
+    limits.maxStorageBufferRange = vulkan.maxStorageBufferRange;
+    limits.maxTexelBufferElements = vulkan.maxTexelBufferElements;
+    limits.maxWorkgroupSize = std::min(vulkan.maxComputeWorkGroupInvocations, vulkan.maxComputeWorkGroupSize[0]);
+    limits.maxWorkgroupCount = vulkan.maxComputeWorkGroupCount[0];
+    limits.subgroupSize = std::max(subgroup.subgroupSize, 1u);
+    const std::optional<std::uint32_t> family = computeQueueFamily(device);
+    const std::uint32_t bits = family ? queueFamilies(device)[*family].timestampValidBits : 0;
+    limits.timestampMask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+    limits.secondsPerTimestamp = bits == 0 ? 0.0 : static_cast<double>(vulkan.timestampPeriod) * 1e-9;
+    return limits;
 }
 
 const char* typeName(VkPhysicalDeviceType type) {
@@ -123,6 +148,8 @@ DeviceDescription describe(VkPhysicalDevice device, std::uint32_t index) {
     description.driverVersion = driver.driverInfo;
     description.type = typeName(properties.properties.deviceType);
     description.software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    description.apiVersion = versionText(properties.properties.apiVersion);
+    if (properties.properties.apiVersion >= kApiVersion) description.limits = limitsOf(device);
     description.unusable = whyUnusable(device, properties.properties);
     return description;
 }
@@ -152,7 +179,6 @@ Device::Device(const DeviceOptions& options) : messages_(std::make_unique<Messag
         createInstance(options.validation);
         choosePhysicalDevice(options.selector);
         createDevice();
-        readLimits();
     } catch (...) {
         destroy();
         throw;
@@ -224,29 +250,7 @@ void Device::createDevice() {
     check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
     volkLoadDevice(device_);
     vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
-}
-
-void Device::readLimits() {
-    auto subgroup =
-        vulkanStruct<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
-    auto properties = vulkanStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
-    properties.pNext = &subgroup;
-    vkGetPhysicalDeviceProperties2(physical_, &properties);
-    const VkPhysicalDeviceLimits& limits = properties.properties.limits;
-    limits_.maxStorageBufferRange = limits.maxStorageBufferRange;
-    limits_.maxTexelBufferElements = limits.maxTexelBufferElements;
-    limits_.maxWorkgroupSize = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
-    limits_.maxWorkgroupCount = limits.maxComputeWorkGroupCount[0];
-    limits_.subgroupSize = std::max(subgroup.subgroupSize, 1u);
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-
-    std::uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
-    const std::uint32_t bits = families[queueFamily_].timestampValidBits;
-    limits_.timestampMask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-    limits_.secondsPerTimestamp = bits == 0 ? 0.0 : static_cast<double>(limits.timestampPeriod) * 1e-9;
 }
 
 std::uint32_t Device::memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags required,

@@ -11,24 +11,6 @@
 
 namespace isolux {
 
-/// What is known of a physical device before it is opened.
-struct DeviceDescription {
-    std::uint32_t index = 0;
-    std::string name;
-    std::string driverName;
-    std::string driverVersion; ///< as the driver states it, e.g. with the versions of Mesa and LLVM
-    std::string type;          ///< "discrete GPU", "software", ...
-    bool software = false;
-    std::string unusable; ///< why Isolux cannot use it; empty if it can
-};
-
-enum class Validation { off, on };
-
-struct DeviceOptions {
-    std::string selector; ///< index or part of a name; empty: the best usable device
-    Validation validation = Validation::off;
-};
-
 /// Limits and properties that decide how work is laid out.
 struct DeviceLimits {
     VkDeviceSize maxStorageBufferRange = 0;
@@ -38,6 +20,26 @@ struct DeviceLimits {
     std::uint32_t subgroupSize = 1;
     double secondsPerTimestamp = 0.0; ///< 0: the queue has no timestamps
     std::uint64_t timestampMask = 0;
+};
+
+/// What is known of a physical device before it is opened.
+struct DeviceDescription {
+    std::uint32_t index = 0;
+    std::string name;
+    std::string driverName;
+    std::string driverVersion; ///< as the driver states it, e.g. with the versions of Mesa and LLVM
+    std::string type;          ///< "discrete GPU", "software", ...
+    bool software = false;
+    std::string apiVersion;
+    DeviceLimits limits;
+    std::string unusable; ///< why Isolux cannot use it; empty if it can
+};
+
+enum class Validation { off, on };
+
+struct DeviceOptions {
+    std::string selector; ///< index or part of a name; empty: the best usable device
+    Validation validation = Validation::off;
 };
 
 class Device {
@@ -51,7 +53,7 @@ public:
     [[nodiscard]] VkQueue queue() const { return queue_; }
     [[nodiscard]] std::uint32_t queueFamily() const { return queueFamily_; }
     [[nodiscard]] const DeviceDescription& description() const { return description_; }
-    [[nodiscard]] const DeviceLimits& limits() const { return limits_; }
+    [[nodiscard]] const DeviceLimits& limits() const { return description_.limits; }
 
     /// The first memory type allowed by `typeBits` with all of `wanted`, else with all of `required`. Throws Error.
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags required,
@@ -68,7 +70,6 @@ private:
     void createMessenger();
     void choosePhysicalDevice(const std::string& selector);
     void createDevice();
-    void readLimits();
     void destroy() noexcept;
 
     std::unique_ptr<MessageLog> messages_;
@@ -79,7 +80,6 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queueFamily_ = 0;
     DeviceDescription description_;
-    DeviceLimits limits_;
     VkPhysicalDeviceMemoryProperties memory_{};
 };
 

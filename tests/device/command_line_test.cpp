@@ -106,6 +106,16 @@ TEST_F(CommandLine, VerifyAgrees) {
     EXPECT_TRUE(nlohmann::json::parse(json.output).at("passed"));
 }
 
+TEST_F(CommandLine, DevicesAreListed) {
+    const Result text = run("devices");
+    EXPECT_EQ(text.exitCode, 0) << text.output;
+    const Result json = run("devices --json");
+    const nlohmann::json devices = nlohmann::json::parse(json.output).at("devices");
+    ASSERT_FALSE(devices.empty());
+    for (const auto& device : devices) EXPECT_NE(text.output.find(device.at("name")), std::string::npos);
+    EXPECT_EQ(run("devices", "VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent ").exitCode, 1);
+}
+
 TEST_F(CommandLine, BadUsageAndInputExitWithTwo) {
     const std::string output = " -o " + file("x.png");
     EXPECT_EQ(run("").exitCode, 2);
