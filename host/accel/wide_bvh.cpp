@@ -59,7 +59,9 @@ int quantizeUpper(float origin, int exponent, float bound) {
 
 /// The finest exponent whose 255 steps cover [origin, upper].
 int chooseExponent(float origin, float upper) {
-    const double extent = static_cast<double>(upper) - origin;
+    // Steps finer than the coordinates' own would decode to the same numbers.
+    const double resolution = std::ldexp(std::max(std::abs(origin), std::abs(upper)), -24);
+    const double extent = std::max(static_cast<double>(upper) - origin, resolution);
     int exponent = extent > 0.0 ? std::ilogb(extent / 255.0) : kMinExponent;
     exponent = std::max(exponent, kMinExponent);
     while (exponent < kMaxExponent && quantizeUpper(origin, exponent, upper) > 255) ++exponent;

@@ -30,8 +30,8 @@ struct SceneRun {
 /// A report that knows the scene and the settings.
 [[nodiscard]] RunReport describeRun(const SceneRun& run, const SceneOptions& options);
 
-/// Renders into `film` and adds device and timings to `report`. If it throws or is interrupted both tell how far it
-/// got.
+/// Renders into `film` and adds device and timings to `report`. If it is interrupted, or a device fails, both tell how
+/// far it got.
 void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
                 const ProgressCallback& progress);
 

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 namespace isolux {
 namespace {
@@ -29,12 +30,13 @@ Metadata metadataOf(const RunReport& report) {
 
 /// Whether the file at `path` may hold more samples than `samples`: it says so, or says nothing of samples.
 bool mayHoldMore(const std::filesystem::path& path, std::uint64_t samples) {
-    if (!std::filesystem::exists(path)) return false;
+    std::error_code error;
+    if (!std::filesystem::exists(path, error) && !error) return false;
     try {
         const auto held = metadataUnsigned(readImage(path).metadata, "isolux/sampleCount");
         return !held || *held > samples;
-    } catch (const Error&) {
-        return true; // not an image of ours: not ours to replace half-done
+    } catch (const std::exception&) {
+        return true; // not an image of ours, or not to be read: not ours to replace half-done
     }
 }
 
@@ -42,19 +44,36 @@ std::filesystem::path partialName(const std::filesystem::path& path) {
     return path.parent_path() / (path.stem().string() + ".partial" + path.extension().string());
 }
 
+/// One file. Throws Error if an interrupted render finds a better one under both of its names.
+void writeOutput(const std::filesystem::path& path, const Image& image, const Film& film, Completion completion) {
+    std::filesystem::path target = path;
+    if (completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount())) target = partialName(path);
+    if (target != path && mayHoldMore(target, film.minSampleCount()))
+        throwFailure(path.string(),
+                     fmt::format("interrupted, and {} may hold more samples: nothing was written", target.string()));
+    writeImage(target, image);
+    if (completion == Completion::interrupted)
+        spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(), film.maxSampleCount(),
+                     target.string());
+}
+
 } // namespace
 
 void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report,
                   Completion completion) {
     const Image image = imageFromFilm(film, metadataOf(report));
+    std::optional<Error> first;
     for (const std::filesystem::path path : paths) {
-        const bool beside = completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount());
-        const std::filesystem::path target = beside ? partialName(path) : path;
-        writeImage(target, image);
-        if (completion == Completion::interrupted)
-            spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(),
-                         film.maxSampleCount(), target.string());
+        try {
+            writeOutput(path, image, film, completion);
+        } catch (const Error& error) {
+            if (first)
+                spdlog::error("{}", error.what());
+            else
+                first = error; // the other files are worth writing all the same
+        }
     }
+    if (first) throw *first;
 }
 
 void writeText(const std::string& path, const std::string& text) {

@@ -13,7 +13,8 @@ namespace isolux {
 enum class Completion { whole, interrupted };
 
 /// Writes the film to every path. An interrupted render replaces a file only if that holds no more samples; otherwise
-/// it goes beside it, with ".partial" in its name.
+/// it goes beside it, with ".partial" in its name. One file that cannot be written does not keep the others from being
+/// so; the first error is thrown at the end.
 void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report,
                   Completion completion);
 

@@ -51,13 +51,11 @@ ExitCode run(const RenderCommand& command) {
         spdlog::warn("interrupted before the first sample; nothing was written");
         return ExitCode::interrupted;
     }
-    writeOutputs(command.outputs, film, report, completion);
-    if (!command.json.empty()) writeText(command.json, toJson(report).dump(2) + "\n");
+    if (failure) fmt::print(stderr, "isolux: error: {}\n", failure->what());
     if (!command.scene.quiet) fmt::print("{}", toText(report));
-    if (failure) {
-        fmt::print(stderr, "isolux: error: {}\n", failure->what());
-        return failure->code();
-    }
+    if (!command.json.empty()) writeText(command.json, toJson(report).dump(2) + "\n");
+    writeOutputs(command.outputs, film, report, completion);
+    if (failure) return failure->code();
     if (completion == Completion::interrupted) return ExitCode::interrupted;
     return film.diagnostics.clean() && report.validationMessages.empty() ? ExitCode::success : ExitCode::failure;
 }

@@ -63,6 +63,7 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
         renderer.render(film, bar.callback());
         outcome.deviceSeconds = bar.elapsedSeconds();
     }
+    if (film.minSampleCount() < run.settings.sampleCount) return std::nullopt;
     Film reference;
     {
         ProgressBar bar("reference", display);
@@ -70,7 +71,7 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
                                     {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, bar.callback());
         outcome.referenceSeconds = bar.elapsedSeconds();
     }
-    if (std::min(film.minSampleCount(), reference.minSampleCount()) < run.settings.sampleCount) return std::nullopt;
+    if (reference.minSampleCount() < run.settings.sampleCount) return std::nullopt;
     outcome.differences = pairedDifferences(film, reference, {command.tolerance, nullptr});
     if (outcome.differences.unexplained > 0) {
         ProgressBar bar("single precision", display);

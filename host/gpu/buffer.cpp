@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace isolux {
@@ -38,6 +40,11 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage
     auto allocation = vulkanStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
     allocation.allocationSize = requirements.size;
     allocation.memoryTypeIndex = chooseMemoryType(device, requirements.memoryTypeBits, access);
+    // Checked here, because some drivers hand out more than their heap holds.
+    if (requirements.size > device.maxAllocation(allocation.memoryTypeIndex))
+        throw Error(ExitCode::tryAgain, device.description().name,
+                    fmt::format("a buffer of {} MiB is more than the {} MiB it can allocate at once",
+                                requirements.size >> 20, device.maxAllocation(allocation.memoryTypeIndex) >> 20));
     VkDeviceMemory memory = VK_NULL_HANDLE;
     check(vkAllocateMemory(device.handle(), &allocation, nullptr, &memory), "vkAllocateMemory");
     memory_ = {device.handle(), memory, vkFreeMemory};

@@ -28,7 +28,8 @@ void loadVulkan() {
                  "render with --backend reference");
 }
 
-VkInstance makeInstance(Validation validation) {
+/// With `messenger` the validation layer is loaded, and reports to it from the creation of the instance on.
+VkInstance makeInstance(const VkDebugUtilsMessengerCreateInfoEXT* messenger) {
     loadVulkan();
     auto application = vulkanStruct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.pApplicationName = "isolux";
@@ -39,8 +40,9 @@ VkInstance makeInstance(Validation validation) {
     auto features = vulkanStruct<VkValidationFeaturesEXT>(VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT);
     features.enabledValidationFeatureCount = static_cast<std::uint32_t>(enabled.size());
     features.pEnabledValidationFeatures = enabled.data();
-    const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
-    if (validation == Validation::on) {
+    features.pNext = messenger;
+    const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    if (messenger != nullptr) {
         info.pNext = &features;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &kValidationLayer;
@@ -85,10 +87,14 @@ DeviceLimits limitsOf(VkPhysicalDevice device) {
     auto subgroup =
         vulkanStruct<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
     auto properties = vulkanStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    auto maintenance = vulkanStruct<VkPhysicalDeviceMaintenance3Properties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+    subgroup.pNext = &maintenance;
     properties.pNext = &subgroup;
     vkGetPhysicalDeviceProperties2(device, &properties);
     const VkPhysicalDeviceLimits& vulkan = properties.properties.limits;
     DeviceLimits limits;
+    limits.maxAllocationSize = maintenance.maxMemoryAllocationSize;
     limits.maxStorageBufferRange = vulkan.maxStorageBufferRange;
     limits.maxTexelBufferElements = vulkan.maxTexelBufferElements;
     limits.maxWorkgroupSize = std::min(vulkan.maxComputeWorkGroupInvocations, vulkan.maxComputeWorkGroupSize[0]);
@@ -137,20 +143,23 @@ std::string whyUnusable(VkPhysicalDevice device, const VkPhysicalDevicePropertie
 }
 
 DeviceDescription describe(VkPhysicalDevice device, std::uint32_t index) {
+    VkPhysicalDeviceProperties basic;
+    vkGetPhysicalDeviceProperties(device, &basic);
+    DeviceDescription description;
+    description.index = index;
+    description.name = basic.deviceName;
+    description.type = typeName(basic.deviceType);
+    description.software = basic.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    description.apiVersion = versionText(basic.apiVersion);
+    description.unusable = whyUnusable(device, basic);
+    if (basic.apiVersion < kApiVersion) return description; // what follows is not there
     auto driver = vulkanStruct<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
     auto properties = vulkanStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
     properties.pNext = &driver;
     vkGetPhysicalDeviceProperties2(device, &properties);
-    DeviceDescription description;
-    description.index = index;
-    description.name = properties.properties.deviceName;
     description.driverName = driver.driverName;
     description.driverVersion = driver.driverInfo;
-    description.type = typeName(properties.properties.deviceType);
-    description.software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    description.apiVersion = versionText(properties.properties.apiVersion);
-    if (properties.properties.apiVersion >= kApiVersion) description.limits = limitsOf(device);
-    description.unusable = whyUnusable(device, properties.properties);
+    description.limits = limitsOf(device);
     return description;
 }
 
@@ -160,10 +169,10 @@ std::string lowercase(std::string text) {
     return text;
 }
 
-bool matches(const DeviceDescription& description, const std::string& selector) {
-    const bool isIndex =
-        std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-    if (isIndex) return std::to_string(description.index) == selector;
+/// Whether a selector names this device: by its number, or, if it is no device's number, by a part of its name.
+bool matches(const DeviceDescription& description, const std::string& selector, std::size_t deviceCount) {
+    for (std::size_t i = 0; i < deviceCount; ++i)
+        if (std::to_string(i) == selector) return description.index == i;
     return lowercase(description.name).find(lowercase(selector)) != std::string::npos;
 }
 
@@ -194,11 +203,10 @@ void Device::destroy() noexcept {
 }
 
 void Device::createInstance(Validation validation) {
-    instance_ = makeInstance(validation);
-    if (validation == Validation::on) createMessenger();
-}
-
-void Device::createMessenger() {
+    if (validation == Validation::off) {
+        instance_ = makeInstance(nullptr);
+        return;
+    }
     auto info =
         vulkanStruct<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
     info.messageSeverity =
@@ -212,6 +220,7 @@ void Device::createMessenger() {
         log->messages.emplace_back(data->pMessage);
         return VK_FALSE;
     };
+    instance_ = makeInstance(&info);
     check(vkCreateDebugUtilsMessengerEXT(instance_, &info, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
 }
 
@@ -224,7 +233,7 @@ void Device::choosePhysicalDevice(const std::string& selector) {
         const DeviceDescription description = describe(devices[i], i);
         seen += fmt::format("\n  {}: {}{}{}", i, description.name,
                             description.unusable.empty() ? "" : ", unusable: ", description.unusable);
-        if (!selector.empty() && !matches(description, selector)) continue;
+        if (!selector.empty() && !matches(description, selector, devices.size())) continue;
         if (!description.unusable.empty()) continue;
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(devices[i], &properties);
@@ -233,8 +242,9 @@ void Device::choosePhysicalDevice(const std::string& selector) {
         physical_ = devices[i];
         description_ = description;
     }
-    if (physical_ == VK_NULL_HANDLE)
-        throwBadInput(selector.empty() ? "Vulkan" : "--device " + selector, "no usable device among these:" + seen);
+    if (physical_ != VK_NULL_HANDLE) return;
+    if (selector.empty()) throwFailure("Vulkan", "no usable device among these:" + seen);
+    throwBadInput("--device " + selector, "no usable device of this number or name among these:" + seen);
 }
 
 void Device::createDevice() {
@@ -263,17 +273,25 @@ std::uint32_t Device::memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags r
 
 VkMemoryPropertyFlags Device::memoryFlags(std::uint32_t type) const { return memory_.memoryTypes[type].propertyFlags; }
 
+VkDeviceSize Device::maxAllocation(std::uint32_t type) const {
+    const VkDeviceSize heap = memory_.memoryHeaps[memory_.memoryTypes[type].heapIndex].size;
+    return std::min(heap, description_.limits.maxAllocationSize);
+}
+
 std::vector<std::string> Device::validationMessages() const {
     const std::lock_guard lock(messages_->mutex);
     return messages_->messages;
 }
 
 std::vector<DeviceDescription> listDevices() {
-    VkInstance instance = makeInstance(Validation::off);
+    struct InstanceOwner {
+        VkInstance instance;
+        ~InstanceOwner() { vkDestroyInstance(instance, nullptr); }
+    };
+    const InstanceOwner owner{makeInstance(nullptr)};
     std::vector<DeviceDescription> descriptions;
-    const std::vector<VkPhysicalDevice> devices = physicalDevices(instance);
+    const std::vector<VkPhysicalDevice> devices = physicalDevices(owner.instance);
     for (std::uint32_t i = 0; i < devices.size(); ++i) descriptions.push_back(describe(devices[i], i));
-    vkDestroyInstance(instance, nullptr);
     return descriptions;
 }
 

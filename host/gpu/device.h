@@ -14,6 +14,7 @@ namespace isolux {
 /// Limits and properties that decide how work is laid out.
 struct DeviceLimits {
     VkDeviceSize maxStorageBufferRange = 0;
+    VkDeviceSize maxAllocationSize = 0;
     VkDeviceSize maxTexelBufferElements = 0;
     std::uint32_t maxWorkgroupSize = 0;
     std::uint32_t maxWorkgroupCount = 0;
@@ -59,6 +60,8 @@ public:
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags required,
                                            VkMemoryPropertyFlags wanted) const;
     [[nodiscard]] VkMemoryPropertyFlags memoryFlags(std::uint32_t type) const;
+    /// The largest single allocation of a memory type: its heap's size, or the driver's limit.
+    [[nodiscard]] VkDeviceSize maxAllocation(std::uint32_t type) const;
 
     /// What the validation layers have said so far; always empty with Validation::off.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
@@ -67,7 +70,6 @@ private:
     struct MessageLog;
 
     void createInstance(Validation validation);
-    void createMessenger();
     void choosePhysicalDevice(const std::string& selector);
     void createDevice();
     void destroy() noexcept;

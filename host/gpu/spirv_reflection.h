@@ -1,4 +1,4 @@
-// What a SPIR-V module says about its own interface: bindings, struct layouts, specialisation constants.
+// What a SPIR-V module says about its own interface: bindings, struct layouts, loops.
 #pragma once
 
 #include "gpu/vulkan.h"

@@ -170,7 +170,7 @@ private:
         const Vec3d p0(primitive.p0Material);
         const Vec3d p1(primitive.p1Light);
         const Vec3d p2(primitive.p2Id);
-        const double area = sphere ? 0.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
+        const double area = sphere ? -1.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
         const Material& material = scene_.materials[std::bit_cast<std::uint32_t>(primitive.p0Material.w)];
         return {word(Vec3f(p0), asFloat(indexOfId[id])), word(Vec3f(p1), static_cast<float>(lights_.choice.pdf[light])),
                 word(Vec3f(p2), static_cast<float>(area)), emissionOf(material)};
@@ -208,10 +208,8 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};
     parameters.depthLights = {settings.maxDepth, settings.rouletteStart, packed.lightBits, packed.lightCount};
-    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset,
-                               static_cast<std::uint32_t>(packed.tables.size())};
-    parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()),
-                              static_cast<std::uint32_t>(packed.primitives.size()), packed.materialCount, 0};
+    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, 0};
+    parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()), 0, packed.materialCount, 0};
     return parameters;
 }
 

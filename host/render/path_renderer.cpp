@@ -115,8 +115,8 @@ void PathRenderer::createKernel(std::uint32_t stackSize) {
     kernel_->bind(shared::kBindFilm, *films_);
     kernel_->bind(shared::kBindStack, *stacks_);
     kernel_->bind(shared::kBindCompletion, *completion_);
-    // A tile without pixels: every lane returns at once, and drivers that compile at the first dispatch have done so.
-    dispatch({0, 0, 0, 0}, {0, 0}, 1, true);
+    // A tile without rows: every lane returns at once, and drivers that compile at the first dispatch have done so.
+    dispatch({0, 0, 1, 0}, {0, 0}, 1, true);
     budget_ = std::min(kFirstBudget, maxStepBudget(device_.limits().subgroupSize));
 }
 

@@ -47,7 +47,8 @@ public:
     /// The same for the pixels of a region; the others keep zero samples.
     void render(Film& film, const Tile& region, const ProgressCallback& progress);
 
-    /// Renders other samples or another depth from now on; resolution and camera stay.
+    /// Renders other samples or a lesser depth from now on; resolution and camera stay, and so does what the kernel was
+    /// specialised to.
     void setSamples(const Batch& samples) { samples_ = samples; }
     void setMaxDepth(std::uint32_t maxDepth);
 

@@ -30,6 +30,20 @@ void validateMesh(const Mesh& mesh, std::size_t materialCount) {
             if (index >= mesh.positions.size()) throwBadInput(where, fmt::format("index {} is out of range", index));
 }
 
+/// What both renderers may compute with: squares and areas stay far inside double's range.
+void validateBounds(const Scene& scene) {
+    constexpr double kLargest = 1e30;
+    constexpr double kSmallest = 1e-30;
+    const Box3d bounds = worldBounds(scene);
+    if (primitiveCount(scene) == 0) return;
+    const Vec3d farthest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+    // Written so that NaN fails: a transform may overflow though its entries and the positions are finite.
+    if (!(maxComponent(farthest) <= kLargest))
+        throwBadInput("scene", "a transformed position is beyond 1e30 or not finite");
+    const double extent = maxComponent(bounds.extent());
+    if (extent != 0.0 && !(extent >= kSmallest)) throwBadInput("scene", "it is smaller than 1e-30; scale it up");
+}
+
 } // namespace
 
 std::size_t primitiveCount(const Scene& scene) {
@@ -80,6 +94,7 @@ void validate(const Scene& scene) {
         if (!isFinite(sphere.center) || !std::isfinite(sphere.radius) || sphere.radius <= 0.0)
             throwBadInput(where, "its centre must be finite and its radius positive");
     }
+    validateBounds(scene);
 }
 
 } // namespace isolux

@@ -75,8 +75,8 @@ struct Scene {
 /// A camera that sees the whole scene from the front, slightly from above; for files that bring none.
 [[nodiscard]] Camera frameScene(const Scene& scene);
 
-/// Checks what both renderers rely on (indices in range, finite numbers, albedo in [0, 1]); throws Error naming the
-/// offender. A loader calls it last.
+/// Checks what both renderers rely on (indices in range, finite numbers, albedo in [0, 1], a size between 1e-30 and
+/// 1e30); throws Error naming the offender. A loader calls it last.
 void validate(const Scene& scene);
 
 } // namespace isolux

@@ -43,6 +43,17 @@ RayTransform transformFor(Ray ray) {
     return result;
 }
 
+// Unit normal and area of a triangle. The cross product is scaled before it is squared, so that small triangles keep
+// their normals; one without any extent has area 0 and the normal `otherwise`.
+vec3 triangleNormal(vec3 p0, vec3 p1, vec3 p2, vec3 otherwise, out float area) {
+    vec3 scaledNormal = cross(p1 - p0, p2 - p0);
+    float size = max(abs(scaledNormal.x), max(abs(scaledNormal.y), abs(scaledNormal.z)));
+    vec3 direction = size > 0.0 ? scaledNormal / size : otherwise;
+    float directionLength = length(direction);
+    area = 0.5 * size * directionLength;
+    return direction / directionLength;
+}
+
 // Moves a point on a surface, known to within `error` per component, off it to the side of `towards` (a unit normal),
 // by just the bound and one rounding (pbrt 6.8.6).
 vec3 offsetOrigin(vec3 point, vec3 error, vec3 towards) {

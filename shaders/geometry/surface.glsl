@@ -13,7 +13,6 @@ struct Surface {
     vec3 error;  // bound on the position's error per component
     vec3 facing; // unit geometric normal on the side the ray came from
     vec3 shading; // unit shading normal, on the same side
-    float area;  // of a triangle; 0 for a sphere
     bool front;  // the ray came from the front side
     uint material;
     uint light; // or kNone
@@ -30,10 +29,8 @@ void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransfor
     float b2 = 1.0 - hit.b0 - hit.b1;
     surface.position = hit.b0 * p0 + hit.b1 * p1 + b2 * p2;
     surface.error = errorBound(7.0) * (abs(hit.b0 * p0) + abs(hit.b1 * p1) + abs(b2 * p2)); // pbrt 6.8.4
-    vec3 scaledNormal = cross(p1 - p0, p2 - p0);
-    float doubleArea = length(scaledNormal);
-    surface.area = 0.5 * doubleArea;
-    vec3 normal = scaledNormal / doubleArea;
+    float area;
+    vec3 normal = triangleNormal(p0, p1, p2, -ray.direction, area);
     surface.front = dot(ray.direction, normal) <= 0.0;
     surface.facing = surface.front ? normal : -normal;
     surface.shading = surface.facing;
@@ -55,7 +52,6 @@ void sphereSurface(PrimitiveRecord primitive, Ray ray, float distance, inout Sur
     vec3 normal = normalize(ray.origin + distance * ray.direction - center);
     surface.position = center + radius * normal;
     surface.error = errorBound(6.0) * (abs(radius * normal) + abs(center));
-    surface.area = 0.0;
     surface.front = dot(ray.direction, normal) <= 0.0;
     surface.facing = surface.front ? normal : -normal;
     surface.shading = surface.facing;

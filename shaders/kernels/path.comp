@@ -68,7 +68,10 @@ void beginNearest() {
 
 void beginSample() {
     uvec4 random = randomBlock(0u);
-    vec2 position = (2.0 * (vec2(pixel) + vec2(unitReal(random.x), unitReal(random.y)))) / vec2(render.imageSeed.xy) - 1.0;
+    // 2 (pixel + u) / size - 1, with the whole numbers apart: the sum keeps more of u's bits, all near the centre.
+    vec2 whole = vec2(2 * ivec2(pixel) + 1 - ivec2(render.imageSeed.xy));
+    vec2 within = 2.0 * vec2(unitReal(random.x), unitReal(random.y)) - 1.0;
+    vec2 position = (whole + within) / vec2(render.imageSeed.xy);
     path.ray.direction = normalize(position.x * render.cameraRight.xyz - position.y * render.cameraUp.xyz + render.cameraForward.xyz);
     path.ray.origin = render.cameraPosition.xyz;
     path.leaves = kNone;

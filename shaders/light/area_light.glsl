@@ -46,14 +46,16 @@ LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
     float b2 = 1.0 - b0 - b1;
     vec3 point = b0 * p0 + b1 * p1 + b2 * p2;
     vec3 error = errorBound(7.0) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
-    vec3 normal = normalize(cross(p1 - p0, p2 - p0));
     vec3 toLight = point - from;
+    float area;
+    vec3 normal = triangleNormal(p0, p1, p2, toLight, area);
     float distanceSquared = dot(toLight, toLight);
     LightSample result;
     result.direction = toLight * inversesqrt(distanceSquared);
     float cosine = -dot(result.direction, normal); // positive: seen from the front
     bool emits = cosine > 0.0 || (cosine < 0.0 && light.emission.w != 0.0);
-    result.pdf = emits ? trianglePdf(light.p1Choice.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
+    // An area that float cannot hold belongs to a triangle that no ray can hit either.
+    result.pdf = emits && light.p2Area.w > 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
     result.target = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal);
     return result;
 }
@@ -109,7 +111,7 @@ float sphereSineSquared(LightRecord light, vec3 from) {
 
 LightSample sampleLight(LightRecord light, vec3 from, vec2 u) {
     LightSample result;
-    if (light.p2Area.w > 0.0) {
+    if (light.p2Area.w >= 0.0) {
         result = sampleTriangle(light, from, u);
     } else {
         float sineSquared = sphereSineSquared(light, from);
@@ -131,7 +133,7 @@ float lightPdf(LightRecord light, vec3 from, float distance, float cosine) {
     float fromOutside = light.p1Choice.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared));
     float fromInside = light.p1Choice.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
     float ofSphere = sineSquared < 1.0 ? fromOutside : fromInside;
-    return light.p2Area.w > 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
+    return light.p2Area.w >= 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
 }
 
 #endif

@@ -37,8 +37,8 @@ struct RenderParameters {
     vec4 cameraForward;
     uvec4 imageSeed;    // width, height, seed low, seed high
     uvec4 depthLights;  // maximum depth, roulette start, bits of the alias table, number of lights
-    uvec4 tableOffsets; // first word of materials, lights, light bins in the tables buffer; w: words in the tables
-    uvec4 sceneCounts;  // nodes, primitives, materials; w unused
+    uvec4 tableOffsets; // first word of materials, lights, light bins in the tables buffer; w unused
+    uvec4 sceneCounts;  // x: nodes, z: materials; y, w unused
 };
 ISOLUX_CHECK_SIZE(RenderParameters, 128);
 

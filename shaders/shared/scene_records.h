@@ -38,11 +38,11 @@ struct MaterialRecord {
 };
 ISOLUX_CHECK_SIZE(MaterialRecord, 32);
 
-// One area light, complete, so that sampling it touches nothing else. Sphere: p0 = centre, p1.x = radius, area = 0.
+// One area light, complete, so that sampling it touches nothing else. Sphere: p0 = centre, p1.x = radius, area = -1.
 struct LightRecord {
     vec4 p0Primitive; // w: index of its PrimitiveRecord, as bits
     vec4 p1Choice;    // w: probability of choosing this light
-    vec4 p2Area;      // w: area of a triangle, 0 for a sphere
+    vec4 p2Area;      // w: area of a triangle, -1 for a sphere
     vec4 emission;    // w: 1 if the back face emits too
 };
 ISOLUX_CHECK_SIZE(LightRecord, 64);

@@ -80,6 +80,29 @@ TEST_F(Paired, SphereLights) {
     expectAgreement(scene, imageSettings(96, 96, 16));
 }
 
+/// Emissive triangles without area, with an area that float cannot square, or that collapses where the scene is large:
+/// none may turn into another light or give a NaN.
+TEST_F(Paired, DegenerateTriangles) {
+    Scene scene = furnaceScene(Vec3d(0.5, 0.4, 0.3), Vec3d(0.0));
+    scene.materials.push_back({"lamp", Vec3d(0.2), Vec3d(40.0), true});
+    Mesh lamp;
+    lamp.name = "lamp";
+    lamp.material = 1;
+    lamp.positions = {{0, 0.9f, 0}, {0.3f, 0.9f, 0}, {0, 0.9f, 0.3f}, {0.6f, 0.9f, 0}, {0.9f, 0.5f, 0.7f}};
+    lamp.triangles = {{0, 1, 2}, {0, 1, 3}, {4, 4, 4}, {0, 1, 1}};
+    Mesh crumb = lamp;
+    crumb.triangles = {{0, 1, 2}};
+    scene.meshes.push_back(lamp);
+    scene.meshes.push_back(crumb);
+    scene.instances.push_back({"lamp", 1, Mat4d(1.0)});
+    for (const double size : {1e-3, 1e-7, 1e-12, 1e-20}) {
+        Mat4d transform(size);
+        transform[3] = glm::dvec4(0.31, -0.41, -0.53, 1.0);
+        scene.instances.push_back({"crumb", 2, transform});
+    }
+    expectAgreement(scene, imageSettings(64, 64, 32));
+}
+
 /// Mirrored, rotated and sheared instances of a smooth mesh, shared between them.
 TEST_F(Paired, InstancesWithNegativeScale) {
     Scene scene = loadScene(projectScene("cornell_spheres"));
