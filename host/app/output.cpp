@@ -73,7 +73,7 @@ void writeOutputs(const std::vector<std::string>& paths, const Film& film, const
                 first = error; // the other files are worth writing all the same
         }
     }
-    if (first) throw *first;
+    if (first) throw Error(*first);
 }
 
 void writeText(const std::string& path, const std::string& text) {
