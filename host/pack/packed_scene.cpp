@@ -33,8 +33,6 @@ DeviceSpace chooseSpace(const Box3d& bounds) {
     return space;
 }
 
-Vec3d transformPoint(const Mat4d& matrix, const Vec3f& point) { return Vec3d(matrix * glm::dvec4(Vec3d(point), 1.0)); }
-
 double largestEntry(const Mat3d& m) {
     double largest = 0.0;
     for (int column = 0; column < 3; ++column) largest = std::max(largest, maxComponent(glm::abs(m[column])));

@@ -56,7 +56,7 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     statistics_.uploadSeconds = uploading.seconds();
 
     Stopwatch compiling;
-    createKernel(stackSize_);
+    createKernel();
     statistics_.compileSeconds = compiling.seconds();
 }
 
@@ -95,14 +95,14 @@ void PathRenderer::setMaxDepth(std::uint32_t maxDepth) {
     writeParameters();
 }
 
-void PathRenderer::createKernel(std::uint32_t stackSize) {
+void PathRenderer::createKernel() {
     const SceneFeatures& features = statistics_.features;
     KernelSource source;
     source.spirv = kernels::path;
     source.pushConstantSize = sizeof(shared::DispatchParameters);
     source.specialization = {{shared::kSpecWorkgroupSize, kWorkgroupSize},
                              {shared::kSpecTexelBuffers, scene_->usesTexelBuffers() ? 1u : 0u},
-                             {shared::kSpecStackSize, stackSize},
+                             {shared::kSpecStackSize, stackSize_},
                              {shared::kSpecSpheres, features.spheres ? 1u : 0u},
                              {shared::kSpecLights, static_cast<std::uint32_t>(features.lights)},
                              {shared::kSpecSmoothNormals, features.smoothNormals ? 1u : 0u},

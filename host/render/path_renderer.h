@@ -57,7 +57,7 @@ public:
 private:
     [[nodiscard]] Tile wholeImage() const;
     [[nodiscard]] std::uint32_t laneLimit() const;
-    void createKernel(std::uint32_t stackSize);
+    void createKernel();
     void createPathBuffers();
     void writeParameters();
     double dispatch(const Tile& tile, const Batch& batch, std::uint32_t budget, bool fresh);

@@ -11,7 +11,7 @@ double emittedPower(const Material& material, double area, bool closed) {
 
 double triangleArea(const Mat4d& worldFromObject, const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
     std::array<Vec3d, 3> p;
-    for (int i = 0; i < 3; ++i) p[i] = Vec3d(worldFromObject * glm::dvec4(Vec3d(mesh.positions[triangle[i]]), 1.0));
+    for (int i = 0; i < 3; ++i) p[i] = transformPoint(worldFromObject, mesh.positions[triangle[i]]);
     return 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
 }
 

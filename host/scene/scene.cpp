@@ -7,8 +7,6 @@
 namespace isolux {
 namespace {
 
-Vec3d transformPoint(const Mat4d& matrix, const Vec3f& point) { return Vec3d(matrix * glm::dvec4(Vec3d(point), 1.0)); }
-
 void validateMaterial(const Material& material) {
     const std::string where = fmt::format("material '{}'", material.name);
     if (!isFinite(material.baseColor) || !isFinite(material.emission)) throwBadInput(where, "a factor is not finite");

@@ -54,6 +54,11 @@ struct Camera {
     std::optional<double> aspectRatio; ///< width / height the file asks for; the image's own decides
 };
 
+/// A vertex in the world, in double: float could not hold it far from the origin.
+[[nodiscard]] inline Vec3d transformPoint(const Mat4d& worldFromObject, const Vec3f& point) {
+    return Vec3d(worldFromObject * glm::dvec4(Vec3d(point), 1.0));
+}
+
 struct Scene {
     std::string name;
     std::vector<Material> materials;
