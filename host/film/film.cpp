@@ -1,5 +1,7 @@
 #include "film/film.h"
 
+#include <algorithm>
+
 namespace isolux {
 
 void PixelStatistics::add(const Vec3d& radiance) {
@@ -30,6 +32,35 @@ Vec3d PixelStatistics::variance() const {
 
 double PixelStatistics::luminanceVariance() const {
     return sampleCount < 2 ? 0.0 : luminanceSquaredDeviation / static_cast<double>(sampleCount - 1);
+}
+
+void PixelAovs::add(const FirstHit& hit) {
+    albedo += hit.albedo;
+    normal += hit.normal;
+    depth += hit.depth;
+    addCoverage(hit.object, 1);
+}
+
+void PixelAovs::addCoverage(std::uint32_t object, std::uint64_t samples) {
+    const auto place = std::lower_bound(objects.begin(), objects.end(), object,
+                                        [](const Coverage& c, std::uint32_t wanted) { return c.object < wanted; });
+    if (place != objects.end() && place->object == object)
+        place->samples += samples;
+    else
+        objects.insert(place, {object, samples});
+}
+
+void PixelAovs::merge(const PixelAovs& other) {
+    albedo += other.albedo;
+    normal += other.normal;
+    depth += other.depth;
+    for (const Coverage& coverage : other.objects) addCoverage(coverage.object, coverage.samples);
+}
+
+std::uint64_t PixelAovs::hitCount() const {
+    std::uint64_t count = 0;
+    for (const Coverage& coverage : objects) count += coverage.samples;
+    return count;
 }
 
 void Diagnostics::merge(const Diagnostics& other) {

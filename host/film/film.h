@@ -15,7 +15,7 @@ struct PixelStatistics {
     double luminanceSquaredDeviation =
         0.0; ///< the same for luminance: channels share random numbers, so it cannot be derived
     std::uint64_t sampleCount = 0;
-    std::uint64_t hitCount = 0;      ///< samples whose camera ray met a surface
+    std::uint64_t hitCount = 0;      ///< samples whose camera ray met a surface, or an environment that emits there
     std::uint32_t pathSignature = 0; ///< sum over samples of the hash of their discrete events; host/scene/README.md
 
     /// Takes one sample in (Welford 1962).
@@ -27,6 +27,36 @@ struct PixelStatistics {
     [[nodiscard]] double luminanceVariance() const;
 
     friend bool operator==(const PixelStatistics&, const PixelStatistics&) = default;
+};
+
+/// What the camera ray of one sample met first.
+struct FirstHit {
+    Vec3d albedo{0.0};        ///< base colour
+    Vec3d normal{0.0};        ///< unit shading normal in the world, on the side of the camera
+    double depth = 0.0;       ///< distance from the camera along its axis, not along the ray, in the world's unit
+    std::uint32_t object = 0; ///< the scene's instances in order, then its spheres
+};
+
+/// The first hits of a pixel's samples. Sums, so that joining runs of samples is addition.
+struct PixelAovs {
+    struct Coverage {
+        std::uint32_t object = 0;
+        std::uint64_t samples = 0;
+
+        friend bool operator==(const Coverage&, const Coverage&) = default;
+    };
+    Vec3d albedo{0.0};             ///< sum
+    Vec3d normal{0.0};             ///< sum
+    double depth = 0.0;            ///< sum
+    std::vector<Coverage> objects; ///< how many samples met each object, by ascending object
+
+    void add(const FirstHit& hit);
+    void addCoverage(std::uint32_t object, std::uint64_t samples);
+    void merge(const PixelAovs& other);
+    /// How many samples met anything.
+    [[nodiscard]] std::uint64_t hitCount() const;
+
+    friend bool operator==(const PixelAovs&, const PixelAovs&) = default;
 };
 
 /// What should not happen, counted instead of hidden.
@@ -46,6 +76,7 @@ struct Film {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<PixelStatistics> pixels; ///< row by row, top row first
+    std::vector<PixelAovs> aovs;         ///< beside `pixels`, or empty if they were not asked for
     Diagnostics diagnostics;
     std::uint64_t rays = 0; ///< rays traced: camera, scattered and shadow rays
 
@@ -57,6 +88,7 @@ struct Film {
     [[nodiscard]] const PixelStatistics& at(std::uint32_t x, std::uint32_t y) const {
         return pixels[std::size_t{y} * width + x];
     }
+    void keepAovs() { aovs.resize(pixels.size()); }
     /// The least and most samples any pixel holds: they differ only in an interrupted render.
     [[nodiscard]] std::uint64_t minSampleCount() const;
     [[nodiscard]] std::uint64_t maxSampleCount() const;

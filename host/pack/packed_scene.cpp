@@ -150,7 +150,7 @@ private:
         packed_.materialCount = static_cast<std::uint32_t>(scene_.materials.size());
         for (const Material& material : scene_.materials)
             append(shared::MaterialRecord{word(Vec3f(material.baseColor), 0.0f), emissionOf(material)});
-        packed_.lightCount = static_cast<std::uint32_t>(lights_.primitives.size());
+        packed_.lightCount = static_cast<std::uint32_t>(lights_.lights.size());
         packed_.lightOffset = static_cast<std::uint32_t>(packed_.tables.size());
         std::vector<std::uint32_t> indexOfId(order.size());
         for (std::uint32_t i = 0; i < order.size(); ++i) indexOfId[order[i]] = i;
@@ -162,7 +162,7 @@ private:
     }
 
     shared::LightRecord lightRecord(std::uint32_t light, const std::vector<std::uint32_t>& indexOfId) const {
-        const std::uint32_t id = lights_.primitives[light];
+        const std::uint32_t id = lights_.lights[light].index;
         const shared::PrimitiveRecord& primitive = primitives_.records[id];
         const bool sphere = (std::bit_cast<std::uint32_t>(primitive.p2Id.w) & shared::kSphereBit) != 0;
         const Vec3d p0(primitive.p0Material);

@@ -10,7 +10,7 @@ namespace {
 bool isSmooth(const Scene& scene, const Instance& instance) { return !scene.meshes[instance.mesh].normals.empty(); }
 
 LightCount countLights(const Scene& scene) {
-    const std::size_t lights = buildLightTable(scene).primitives.size();
+    const std::size_t lights = buildLightTable(scene).lights.size();
     return lights == 0 ? LightCount::none : lights == 1 ? LightCount::one : LightCount::many;
 }
 

@@ -30,13 +30,13 @@ public:
     Lights(const Scene& scene, const World<Real>& world)
         : scene_(scene), world_(world), table_(buildLightTable(scene)) {}
 
-    [[nodiscard]] bool empty() const { return table_.primitives.empty(); }
+    [[nodiscard]] bool empty() const { return table_.lights.empty(); }
 
     /// A point on a light, by the four words of a light block; none if it does not emit towards `receiver`.
     [[nodiscard]] std::optional<LightSample<Real>> sample(const Surface<Real>& receiver,
                                                           const PhiloxBlock& words) const {
         const std::uint32_t light = sampleAliasTable(table_.choice, words[0], words[1]);
-        const std::uint32_t primitive = table_.primitives[light];
+        const std::uint32_t primitive = table_.lights[light].index;
         const Real u = unitReal<Real>(words[2]);
         const Real v = unitReal<Real>(words[3]);
         if (world_.isTriangle(primitive)) return sampleTriangleLight(receiver.origin, primitive, sampleTriangle(u, v));

@@ -3,6 +3,8 @@
 
 #include "scene/render_settings.h"
 
+#include <optional>
+
 namespace isolux {
 
 /// The type of every quantity along a path. Sums over samples are double in both.
@@ -16,6 +18,8 @@ struct ReferenceOptions {
     Precision precision = Precision::doublePrecision;
     Intersector intersector = Intersector::bvh;
     PathSignatures signatures = PathSignatures::off;
+    Aovs aovs = Aovs::off;
+    std::optional<double> seconds = std::nullopt; ///< stop after about this time, at least one sample a pixel
 };
 
 } // namespace isolux

@@ -14,6 +14,9 @@ inline constexpr double kMaxSurvival = 1.0 - 1.0 / 1024.0;
 /// Whether PixelStatistics::pathSignature is filled (README.md, path signature).
 enum class PathSignatures { off, on };
 
+/// Whether Film::aovs is filled: what camera rays meet first.
+enum class Aovs { off, on };
+
 struct RenderSettings {
     std::uint32_t width = 512;
     std::uint32_t height = 384;

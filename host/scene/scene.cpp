@@ -28,6 +28,32 @@ void validateMesh(const Mesh& mesh, std::size_t materialCount) {
             if (index >= mesh.positions.size()) throwBadInput(where, fmt::format("index {} is out of range", index));
 }
 
+void validateCamera(const Camera& camera) {
+    const std::string where = fmt::format("camera '{}'", camera.name);
+    const bool finite = isFinite(camera.position) && std::isfinite(camera.yfov) && std::isfinite(camera.ymag);
+    if (!finite) throwBadInput(where, "a number is not finite");
+    if (camera.projection == Projection::perspective && !(camera.yfov > 0.0 && camera.yfov < kPi))
+        throwBadInput(where, "its field of view must lie between 0 and 180 degrees");
+    if (camera.projection == Projection::orthographic && !(camera.ymag > 0.0))
+        throwBadInput(where, "its magnification must be positive");
+}
+
+void validatePunctualLight(const PunctualLight& light) {
+    const std::string where = fmt::format("light '{}'", light.name);
+    const bool finite = isFinite(light.position) && isFinite(light.direction) && isFinite(light.intensity);
+    if (!finite) throwBadInput(where, "a number is not finite");
+    if (glm::any(glm::lessThan(light.intensity, Vec3d(0.0)))) throwBadInput(where, "intensity must not be negative");
+    if (!(std::abs(glm::length(light.direction) - 1.0) < 1e-6)) throwBadInput(where, "its direction has no length");
+    if (light.kind == PunctualKind::spot && !(light.cosOuter < light.cosInner))
+        throwBadInput(where, "its inner cone must be narrower than its outer one");
+}
+
+void validateEnvironment(const Environment& environment) {
+    if (!isFinite(environment.radiance)) throwBadInput("environment", "its radiance is not finite");
+    if (glm::any(glm::lessThan(environment.radiance, Vec3d(0.0))))
+        throwBadInput("environment", "its radiance must not be negative");
+}
+
 /// What both renderers may compute with: squares and areas stay far inside double's range.
 void validateBounds(const Scene& scene) {
     constexpr double kLargest = 1e30;
@@ -62,6 +88,8 @@ Box3d worldBounds(const Scene& scene) {
     return bounds;
 }
 
+double worldRadius(const Scene& scene) { return 0.5 * glm::length(worldBounds(scene).extent()); }
+
 Camera frameScene(const Scene& scene) {
     const Box3d bounds = worldBounds(scene);
     const double radius = bounds.empty() ? 1.0 : std::max(0.5 * glm::length(bounds.extent()), 1e-30);
@@ -92,6 +120,9 @@ void validate(const Scene& scene) {
         if (!isFinite(sphere.center) || !std::isfinite(sphere.radius) || sphere.radius <= 0.0)
             throwBadInput(where, "its centre must be finite and its radius positive");
     }
+    for (const Camera& camera : scene.cameras) validateCamera(camera);
+    for (const PunctualLight& light : scene.punctualLights) validatePunctualLight(light);
+    validateEnvironment(scene.environment);
     validateBounds(scene);
 }
 

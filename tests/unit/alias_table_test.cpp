@@ -105,7 +105,7 @@ TEST(LightTable, ChoosesByPowerAndSkipsWhatHasNoArea) {
     }
     scene.spheres.push_back({"bulb", Vec3d(0.0), 1.0, 1});
     const LightTable lights = buildLightTable(scene);
-    EXPECT_EQ(lights.primitives, (std::vector<std::uint32_t>{2, 4, 6}));
+    EXPECT_EQ(lights.lights, (std::vector<Light>{{LightKind::area, 2}, {LightKind::area, 4}, {LightKind::area, 6}}));
     EXPECT_EQ(lights.lightOf, (std::vector<std::uint32_t>{kNoLight, kNoLight, 0, kNoLight, 1, kNoLight, 2}));
     const double total = 0.5 + 1.0 + 4.0 * kPi; // areas, the panel's counted twice
     EXPECT_NEAR(lights.choice.pdf[0], 0.5 / total, 1e-9);

@@ -72,7 +72,11 @@ struct SceneBuilder {
     }
     void camera(const Vec3d& position, const Vec3d& target, double yfov) {
         const Frame<double> frame = frameAbout(glm::normalize(position - target));
-        scene.cameras.push_back({"", position, Mat3d(frame.t, frame.s, frame.n), yfov, std::nullopt});
+        Camera camera;
+        camera.position = position;
+        camera.worldFromCamera = Mat3d(frame.t, frame.s, frame.n);
+        camera.yfov = yfov;
+        scene.cameras.push_back(camera);
     }
 };
 
