@@ -88,6 +88,7 @@ struct Film {
     [[nodiscard]] const PixelStatistics& at(std::uint32_t x, std::uint32_t y) const {
         return pixels[std::size_t{y} * width + x];
     }
+    [[nodiscard]] PixelAovs& aovsAt(std::uint32_t x, std::uint32_t y) { return aovs[std::size_t{y} * width + x]; }
     void keepAovs() { aovs.resize(pixels.size()); }
     /// The least and most samples any pixel holds: they differ only in an interrupted render.
     [[nodiscard]] std::uint64_t minSampleCount() const;

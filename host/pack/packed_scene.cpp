@@ -77,6 +77,7 @@ private:
     void addInstance(const Instance& instance) {
         const Mesh& mesh = scene_.meshes[instance.mesh];
         const Mat3d normalFromObject = normalMatrix(instance.worldFromObject);
+        beginObject();
         const bool mirrored = glm::determinant(Mat3d(instance.worldFromObject)) < 0.0;
         std::vector<Vec3f> positions(mesh.positions.size());
         for (std::size_t i = 0; i < positions.size(); ++i)
@@ -95,6 +96,8 @@ private:
         }
     }
 
+    void beginObject() { packed_.firstOfObject.push_back(static_cast<std::uint32_t>(primitives_.records.size())); }
+
     void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
         primitives_.records.push_back(
@@ -106,6 +109,7 @@ private:
 
     void addSphere(const Sphere& sphere) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
+        beginObject();
         const Vec3f center(packed_.space.fromWorld(sphere.center));
         const auto radius = static_cast<float>(sphere.radius * packed_.space.scale);
         primitives_.records.push_back({word(center, asFloat(sphere.material)),
@@ -149,12 +153,15 @@ private:
     void addTables(const std::vector<std::uint32_t>& order) {
         packed_.materialCount = static_cast<std::uint32_t>(scene_.materials.size());
         for (const Material& material : scene_.materials)
-            append(shared::MaterialRecord{word(Vec3f(material.baseColor), 0.0f), emissionOf(material)});
+            append(shared::MaterialRecord{word(Vec3f(material.baseColor), 0.0f),
+                                          word(Vec3f(material.emission), material.doubleSided ? 1.0f : 0.0f)});
         packed_.lightCount = static_cast<std::uint32_t>(lights_.lights.size());
         packed_.lightOffset = static_cast<std::uint32_t>(packed_.tables.size());
         std::vector<std::uint32_t> indexOfId(order.size());
         for (std::uint32_t i = 0; i < order.size(); ++i) indexOfId[order[i]] = i;
         for (std::uint32_t light = 0; light < packed_.lightCount; ++light) append(lightRecord(light, indexOfId));
+        if (lights_.environment != kNoLight)
+            packed_.environmentPdf = lights_.choice.pdf[lights_.environment] / scene_.environment.solidAngle();
         packed_.lightBits = lights_.choice.bits;
         packed_.binOffset = static_cast<std::uint32_t>(packed_.tables.size());
         for (const AliasTable::Bin& bin : lights_.choice.bins)
@@ -162,20 +169,54 @@ private:
     }
 
     shared::LightRecord lightRecord(std::uint32_t light, const std::vector<std::uint32_t>& indexOfId) const {
-        const std::uint32_t id = lights_.lights[light].index;
+        const Light& source = lights_.lights[light];
+        shared::LightRecord record = source.kind == LightKind::area       ? areaLight(source.index, indexOfId)
+                                     : source.kind == LightKind::punctual ? punctualLight(source.index)
+                                                                          : environmentLight();
+        record.p1Choice.w = static_cast<float>(lights_.choice.pdf[light]);
+        return record;
+    }
+
+    shared::LightRecord areaLight(std::uint32_t id, const std::vector<std::uint32_t>& indexOfId) const {
         const shared::PrimitiveRecord& primitive = primitives_.records[id];
         const bool sphere = (std::bit_cast<std::uint32_t>(primitive.p2Id.w) & shared::kSphereBit) != 0;
         const Vec3d p0(primitive.p0Material);
         const Vec3d p1(primitive.p1Light);
         const Vec3d p2(primitive.p2Id);
-        const double area = sphere ? -1.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
+        const double area = sphere ? 0.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
         const Material& material = scene_.materials[std::bit_cast<std::uint32_t>(primitive.p0Material.w)];
-        return {word(Vec3f(p0), asFloat(indexOfId[id])), word(Vec3f(p1), static_cast<float>(lights_.choice.pdf[light])),
-                word(Vec3f(p2), static_cast<float>(area)), emissionOf(material)};
+        const std::uint32_t kind = (sphere ? shared::kLightSphere : shared::kLightTriangle) |
+                                   (material.doubleSided ? shared::kLightTwoSidedBit : 0u);
+        return {word(Vec3f(p0), asFloat(indexOfId[id])), word(Vec3f(p1), 0.0f),
+                word(Vec3f(p2), static_cast<float>(area)), word(Vec3f(material.emission), asFloat(kind))};
     }
 
-    static glm::vec4 emissionOf(const Material& material) {
-        return word(Vec3f(material.emission), material.doubleSided ? 1.0f : 0.0f);
+    shared::LightRecord punctualLight(std::uint32_t index) const {
+        const PunctualLight& light = scene_.punctualLights[index];
+        const bool directional = light.kind == PunctualKind::directional;
+        const std::uint32_t kind = directional                        ? shared::kLightDirectional
+                                   : light.kind == PunctualKind::spot ? shared::kLightSpot
+                                                                      : shared::kLightPoint;
+        // What a point sends falls off with the square of the distance, which device space measures in its own unit.
+        const double unit = directional ? 1.0 : packed_.space.scale * packed_.space.scale;
+        const Vec3f sent(light.intensity * unit);
+        const Vec3f position(directional ? Vec3d(0.0) : packed_.space.fromWorld(light.position));
+        if (!isFinite(sent) || !isFinite(position) || (luminance(sent) == 0.0f && luminance(light.intensity) > 0.0))
+            throwBadInput(fmt::format("light '{}'", light.name),
+                          "single precision cannot hold its intensity or position in a scene of this size; use "
+                          "--backend reference");
+        return {word(position, asFloat(shared::kNone)),
+                word(Vec3f(light.direction), 0.0f),
+                {static_cast<float>(light.cosInner), static_cast<float>(light.cosOuter), 0.0f, 0.0f},
+                word(sent, asFloat(kind))};
+    }
+
+    shared::LightRecord environmentLight() const {
+        const float range = scene_.environment.extent == EnvironmentExtent::sphere ? 2.0f : 1.0f;
+        return {word(Vec3f(0.0f), asFloat(shared::kNone)),
+                glm::vec4(0.0f),
+                {range, 0.0f, 0.0f, 0.0f},
+                word(Vec3f(scene_.environment.radiance), asFloat(shared::kLightEnvironment))};
     }
 
     template <typename Record> void append(const Record& record) {
@@ -196,13 +237,17 @@ PackedScene packScene(const Scene& scene) { return Packer(scene).pack(); }
 
 shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene, const RenderSettings& settings) {
     const Camera& camera = scene.cameras.at(settings.camera);
-    const double tangent = std::tan(0.5 * camera.yfov);
+    const bool orthographic = camera.projection == Projection::orthographic;
+    const double halfHeight = orthographic ? camera.ymag * packed.space.scale : std::tan(0.5 * camera.yfov);
     const double aspect = static_cast<double>(settings.width) / static_cast<double>(settings.height);
     shared::RenderParameters parameters{};
-    parameters.cameraPosition = word(Vec3f(packed.space.fromWorld(camera.position)), 0.0f);
-    parameters.cameraRight = word(Vec3f(camera.worldFromCamera[0] * (tangent * aspect)), 0.0f);
-    parameters.cameraUp = word(Vec3f(camera.worldFromCamera[1] * tangent), 0.0f);
+    parameters.cameraPosition = word(Vec3f(packed.space.fromWorld(camera.position)), orthographic ? 1.0f : 0.0f);
+    parameters.cameraRight = word(Vec3f(camera.worldFromCamera[0] * (halfHeight * aspect)), 0.0f);
+    parameters.cameraUp = word(Vec3f(camera.worldFromCamera[1] * halfHeight), 0.0f);
     parameters.cameraForward = word(Vec3f(-camera.worldFromCamera[2]), 0.0f);
+    const Environment& environment = scene.environment;
+    parameters.environment = word(Vec3f(environment.radiance), static_cast<float>(packed.environmentPdf));
+    parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};
     parameters.depthLights = {settings.maxDepth, settings.rouletteStart, packed.lightBits, packed.lightCount};

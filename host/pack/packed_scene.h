@@ -7,6 +7,7 @@
 #include "shared/path_records.h"
 #include "shared/scene_records.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace isolux {
@@ -30,7 +31,9 @@ struct PackedScene {
     std::uint32_t lightBits = 0;
     std::uint32_t lightOffset = 0; ///< first word of the lights in `tables`
     std::uint32_t binOffset = 0;   ///< first word of the light bins
-    std::uint32_t stackBound = 1;  ///< entries a traversal stack must hold
+    double environmentPdf = 0.0;   ///< of light sampling, per solid angle; 0 if it never chooses the environment
+    std::vector<std::uint32_t> firstOfObject; ///< first primitive id of each instance and each sphere, in scene order
+    std::uint32_t stackBound = 1;             ///< entries a traversal stack must hold
     DeviceSpace space;
 };
 

@@ -9,9 +9,14 @@ namespace {
 
 bool isSmooth(const Scene& scene, const Instance& instance) { return !scene.meshes[instance.mesh].normals.empty(); }
 
-LightCount countLights(const Scene& scene) {
-    const std::size_t lights = buildLightTable(scene).lights.size();
+LightCount countLights(const LightTable& table) {
+    const std::size_t lights = table.lights.size();
     return lights == 0 ? LightCount::none : lights == 1 ? LightCount::one : LightCount::many;
+}
+
+bool hasKind(const LightTable& table, LightKind kind) {
+    return std::any_of(table.lights.begin(), table.lights.end(),
+                       [&](const Light& light) { return light.kind == kind; });
 }
 
 } // namespace
@@ -23,7 +28,11 @@ SceneFeatures findFeatures(const Scene& scene, const RenderSettings& settings) {
                                          [&](const Instance& instance) { return isSmooth(scene, instance); });
     // A path of maxDepth bounces is never asked whether to make bounce maxDepth + 1.
     features.roulette = settings.maxDepth >= settings.rouletteStart;
-    features.lights = countLights(scene);
+    const LightTable lights = buildLightTable(scene);
+    features.lights = countLights(lights);
+    features.areaLights = hasKind(lights, LightKind::area);
+    features.punctualLights = hasKind(lights, LightKind::punctual);
+    features.environment = scene.environment.emits(); // seen, even if there is nothing that it could light
     return features;
 }
 

@@ -16,6 +16,9 @@ struct SceneFeatures {
     bool smoothNormals = true;
     bool roulette = true;
     LightCount lights = LightCount::many;
+    bool areaLights = true;
+    bool punctualLights = true;
+    bool environment = true;
 
     friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };

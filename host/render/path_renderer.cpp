@@ -1,6 +1,7 @@
 #include "render/path_renderer.h"
 
 #include "core/error.h"
+#include "core/pacing.h"
 #include "core/stopwatch.h"
 
 #include "kernels/spirv.h"
@@ -8,10 +9,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace isolux {
 namespace {
+
+static_assert(shared::kAovBatchSamples == kBatchSamples);
 
 constexpr std::uint32_t kWorkgroupSize = 64;
 constexpr std::uint32_t kFirstBudget = 256;
@@ -46,6 +50,8 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     if (!statistics_.features.smoothNormals) packed.normals.clear(); // nothing will read them
     parameters_ = packParameters(packed, scene, settings);
     stackSize_ = packed.stackBound;
+    firstOfObject_ = packed.firstOfObject;
+    worldPerDevice_ = 1.0 / packed.space.scale;
     statistics_.packSeconds = packing.seconds();
 
     Stopwatch uploading;
@@ -72,13 +78,15 @@ std::uint32_t PathRenderer::laneLimit() const {
 }
 
 void PathRenderer::createPathBuffers() {
-    const Schedule schedule = makeSchedule(wholeImage(), samples_, {laneLimit()});
+    const Schedule schedule = makeSchedule(wholeImage(), {laneLimit()});
     maxLanes_ = schedule.maxLaneCount;
     const VkDeviceSize lanes = maxLanes_;
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     paths_ = std::make_unique<Buffer>(device_, lanes * sizeof(shared::PathRecord), kStorage, BufferAccess::deviceOnly);
     stacks_ = std::make_unique<Buffer>(device_, lanes * stackSize_ * 8, kStorage, BufferAccess::deviceOnly);
     films_ = std::make_unique<Buffer>(device_, lanes * sizeof(shared::FilmRecord), kStorage, BufferAccess::hostReads);
+    const VkDeviceSize aovLanes = options_.aovs == Aovs::on ? lanes : 0;
+    aovs_ = std::make_unique<Buffer>(device_, aovLanes * sizeof(shared::AovRecord), kStorage, BufferAccess::hostReads);
     completion_ =
         std::make_unique<Buffer>(device_, sizeof(shared::CompletionRecord), kStorage, BufferAccess::hostReads);
     parameterBuffer_ = std::make_unique<Buffer>(device_, sizeof(parameters_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
@@ -107,6 +115,10 @@ void PathRenderer::createKernel() {
                              {shared::kSpecLights, static_cast<std::uint32_t>(features.lights)},
                              {shared::kSpecSmoothNormals, features.smoothNormals ? 1u : 0u},
                              {shared::kSpecRoulette, features.roulette ? 1u : 0u},
+                             {shared::kSpecAreaLights, features.areaLights ? 1u : 0u},
+                             {shared::kSpecPunctualLights, features.punctualLights ? 1u : 0u},
+                             {shared::kSpecEnvironment, features.environment ? 1u : 0u},
+                             {shared::kSpecAovs, options_.aovs == Aovs::on ? 1u : 0u},
                              {shared::kSpecPathSignatures, options_.signatures == PathSignatures::on ? 1u : 0u}};
     kernel_ = std::make_unique<Kernel>(device_, source);
     scene_->bindTo(*kernel_);
@@ -115,6 +127,7 @@ void PathRenderer::createKernel() {
     kernel_->bind(shared::kBindFilm, *films_);
     kernel_->bind(shared::kBindStack, *stacks_);
     kernel_->bind(shared::kBindCompletion, *completion_);
+    kernel_->bind(shared::kBindAovs, *aovs_);
     // A tile without rows: every lane returns at once, and drivers that compile at the first dispatch have done so.
     dispatch({0, 0, 1, 0}, {0, 0}, 1, true);
     budget_ = std::min(kFirstBudget, maxStepBudget(device_.limits().subgroupSize));
@@ -129,16 +142,25 @@ double PathRenderer::dispatch(const Tile& tile, const Batch& batch, std::uint32_
 }
 
 void PathRenderer::render(Film& film, const Tile& region, const ProgressCallback& progress) {
-    const Schedule schedule = makeSchedule(region, samples_, {maxLanes_});
-    const double total = static_cast<double>(schedule.batches.size() * schedule.tiles.size());
-    double finished = 0.0;
-    for (const Batch& batch : schedule.batches)
+    if (options_.aovs == Aovs::on) film.keepAovs();
+    const Schedule schedule = makeSchedule(region, {maxLanes_});
+    const Pacing pacing(options_.seconds, kBatchSamples);
+    const auto tileCount = static_cast<double>(schedule.tiles.size());
+    std::uint32_t done = 0;
+    while (const std::uint32_t count = pacing.nextPass(done, samples_.sampleCount)) {
+        const Batch batch{samples_.firstSample + done, count};
+        double finishedTiles = 0.0;
         for (const Tile& tile : schedule.tiles) {
-            const auto tileProgress = [&](double fraction) { return progress((finished + fraction) / total); };
+            const auto tileProgress = [&](double fraction) {
+                const double part = (finishedTiles + fraction) / tileCount;
+                return progress(pacing.fraction(done + count * part, samples_.sampleCount));
+            };
             if (renderTile(tile, batch, tileProgress) == Continue::no) return;
             joinTile(film, tile, batch);
-            finished += 1.0;
+            finishedTiles += 1.0;
         }
+        done += count;
+    }
 }
 
 Continue PathRenderer::renderTile(const Tile& tile, const Batch& batch,
@@ -167,7 +189,9 @@ Continue PathRenderer::renderTile(const Tile& tile, const Batch& batch,
 
 void PathRenderer::joinTile(Film& film, const Tile& tile, const Batch& batch) const {
     films_->invalidate();
+    aovs_->invalidate();
     const auto records = recordsIn<shared::FilmRecord>(*films_);
+    const auto aovRecords = recordsIn<shared::AovRecord>(*aovs_);
     const std::uint32_t blocksPerRow = (tile.width + 7) / 8;
     for (std::uint32_t y = 0; y < tile.height; ++y)
         for (std::uint32_t x = 0; x < tile.width; ++x) {
@@ -180,6 +204,19 @@ void PathRenderer::joinTile(Film& film, const Tile& tile, const Batch& batch) co
             film.at(tile.x + x, tile.y + y).merge(statisticsOf(record));
             film.rays += record.counts.y;
             film.diagnostics.merge({record.counts.w, record.faults.x, record.faults.y, record.faults.z});
+            if (options_.aovs == Aovs::on) joinAovs(film.aovsAt(tile.x + x, tile.y + y), aovRecords[lane]);
+        }
+}
+
+void PathRenderer::joinAovs(PixelAovs& aovs, const shared::AovRecord& record) const {
+    aovs.albedo += toDouble(record.albedoDepth);
+    aovs.normal += toDouble(record.normal);
+    aovs.depth += record.albedoDepth.w * worldPerDevice_;
+    for (const glm::uvec4& four : record.primitiveId)
+        for (int i = 0; i < 4; ++i) {
+            if (four[i] == shared::kNone) continue;
+            const auto next = std::upper_bound(firstOfObject_.begin(), firstOfObject_.end(), four[i]);
+            aovs.addCoverage(static_cast<std::uint32_t>(next - firstOfObject_.begin() - 1), 1);
         }
 }
 

@@ -21,6 +21,8 @@ struct RenderOptions {
     double dispatchSeconds = 0.07;
     ReadPath readPath = ReadPath::automatic;
     PathSignatures signatures = PathSignatures::off;
+    Aovs aovs = Aovs::off;
+    std::optional<double> seconds;         ///< stop after about this time, at least one sample a pixel
     std::optional<SceneFeatures> features; ///< instead of what the scene needs (for tests and benchmarks)
     std::optional<std::uint32_t> maxLanes; ///< instead of what suits the device
 };
@@ -63,6 +65,7 @@ private:
     double dispatch(const Tile& tile, const Batch& batch, std::uint32_t budget, bool fresh);
     Continue renderTile(const Tile& tile, const Batch& batch, const std::function<Continue(double)>& progress);
     void joinTile(Film& film, const Tile& tile, const Batch& batch) const;
+    void joinAovs(PixelAovs& aovs, const shared::AovRecord& record) const;
 
     const Device& device_;
     RenderOptions options_;
@@ -78,6 +81,9 @@ private:
     std::unique_ptr<Buffer> parameterBuffer_;
     std::unique_ptr<Buffer> paths_;
     std::unique_ptr<Buffer> films_;
+    std::unique_ptr<Buffer> aovs_;
+    std::vector<std::uint32_t> firstOfObject_;
+    double worldPerDevice_ = 1.0; ///< length
     std::unique_ptr<Buffer> stacks_;
     std::unique_ptr<Buffer> completion_;
 };

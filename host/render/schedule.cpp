@@ -13,7 +13,7 @@ constexpr std::uint32_t kBlockLanes = 64; // 8 x 8 pixels
 
 } // namespace
 
-Schedule makeSchedule(const Tile& region, const Batch& samples, const ScheduleLimits& limits) {
+Schedule makeSchedule(const Tile& region, const ScheduleLimits& limits) {
     Schedule schedule;
     const std::uint32_t blocks = std::max(limits.maxLanes / kBlockLanes, 1u);
     // About square, so that a tile's paths see similar things; long thin images get long thin tiles.
@@ -28,11 +28,6 @@ Schedule makeSchedule(const Tile& region, const Batch& samples, const ScheduleLi
             schedule.maxLaneCount = std::max(schedule.maxLaneCount, tile.laneCount());
             schedule.tiles.push_back(tile);
         }
-    for (std::uint32_t done = 0; done < samples.sampleCount;) {
-        const std::uint32_t count = std::min(kBatchSamples, samples.sampleCount - done);
-        schedule.batches.push_back({samples.firstSample + done, count});
-        done += count;
-    }
     return schedule;
 }
 

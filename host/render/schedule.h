@@ -10,7 +10,7 @@
 namespace isolux {
 
 /// Samples a lane takes before the host joins its statistics in double. Fixed, because the order of summation is part
-/// of the image.
+/// of the image; a render with a time limit takes fewer in some batches.
 inline constexpr std::uint32_t kBatchSamples = 16;
 
 struct Tile {
@@ -32,7 +32,6 @@ struct Batch {
 /// Every tile of a batch is rendered before the next batch begins: an interrupted render covers the image.
 struct Schedule {
     std::vector<Tile> tiles;
-    std::vector<Batch> batches;
     std::uint32_t maxLaneCount = 0; ///< of any tile
 };
 
@@ -40,8 +39,8 @@ struct ScheduleLimits {
     std::uint32_t maxLanes = 1u << 18; ///< lanes whose state fits the device's buffers
 };
 
-/// Tiles cover exactly the region, without overlap; batches exactly the samples.
-[[nodiscard]] Schedule makeSchedule(const Tile& region, const Batch& samples, const ScheduleLimits& limits);
+/// Tiles cover exactly the region, without overlap.
+[[nodiscard]] Schedule makeSchedule(const Tile& region, const ScheduleLimits& limits);
 
 /// Most steps a lane may take in one dispatch. Lavapipe of Mesa 22.3 ends loops after 65,535 iterations, counted over
 /// the lanes of a subgroup and over all loops; what a lane needs beyond its steps (leaves begun, stacks stored) is

@@ -4,21 +4,24 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "kernels/scene_bindings.glsl"
+#include "core/philox.glsl"
 #include "film/accumulate.glsl"
 #include "geometry/surface.glsl"
 #include "geometry/traverse.glsl"
-#include "light/area_light.glsl"
+#include "light/light.glsl"
 #include "material/lambertian.glsl"
 #include "shared/path_records.h"
 
 layout(constant_id = 6) const bool kRoulette = true;
 layout(constant_id = 7) const bool kPathSignatures = false;
+layout(constant_id = 12) const bool kAovs = false;
 
 layout(set = 0, binding = 8, std140) uniform RenderBuffer { RenderParameters render; };
 layout(set = 0, binding = 9, std430) buffer PathBuffer { PathRecord paths[]; };
 layout(set = 0, binding = 10, std430) buffer FilmBuffer { FilmRecord films[]; };
 layout(set = 0, binding = 11, std430) buffer StackBuffer { uvec2 stacks[]; };
 layout(set = 0, binding = 12, std430) buffer CompletionBuffer { CompletionRecord completion; };
+layout(set = 0, binding = 15, std430) buffer AovBuffer { AovRecord aovs[]; };
 layout(push_constant) uniform Parameters { DispatchParameters parameters; };
 
 const float kMaxSurvival = 1.0 - 1.0 / 1024.0; // host/scene/render_settings.h
@@ -72,8 +75,10 @@ void beginSample() {
     vec2 whole = vec2(2 * ivec2(pixel) + 1 - ivec2(render.imageSeed.xy));
     vec2 within = 2.0 * vec2(unitReal(random.x), unitReal(random.y)) - 1.0;
     vec2 position = (whole + within) / vec2(render.imageSeed.xy);
-    path.ray.direction = normalize(position.x * render.cameraRight.xyz - position.y * render.cameraUp.xyz + render.cameraForward.xyz);
-    path.ray.origin = render.cameraPosition.xyz;
+    vec3 across = position.x * render.cameraRight.xyz - position.y * render.cameraUp.xyz;
+    bool orthographic = render.cameraPosition.w != 0.0;
+    path.ray.direction = orthographic ? render.cameraForward.xyz : normalize(across + render.cameraForward.xyz);
+    path.ray.origin = render.cameraPosition.xyz + (orthographic ? across : vec3(0.0));
     path.leaves = kNone;
     path.depth = 0u;
     path.pdf = 0.0;
@@ -99,17 +104,43 @@ void addEmission(Surface surface, MaterialRecord material, float distance) {
     vec3 emission = material.emission.xyz;
     if (emission != vec3(0.0) && (surface.front || material.emission.w != 0.0)) {
         float weight = 1.0;
-        if (kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
+        if (kAreaLights && kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
             LightRecord light = readLight(render.tableOffsets.y, surface.light);
             float cosine = abs(dot(path.ray.direction, surface.facing));
-            weight = powerHeuristic(path.pdf, lightPdf(light, path.ray.origin, distance, cosine));
+            weight = powerHeuristic(path.pdf, areaLightPdf(light, path.ray.origin, distance, cosine));
         }
         path.radiance += path.throughput * emission * weight;
     }
 }
 
-// Samples a light and leaves a pending shadow ray in the path if it could contribute.
-bool sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
+// What a ray that meets nothing sees.
+void addEnvironment() {
+    if (kEnvironment && path.ray.direction.y > render.environmentLimits.x) {
+        bool onlyWay = path.depth == 0u || render.environment.w == 0.0;
+        float weight = onlyWay ? 1.0 : powerHeuristic(path.pdf, render.environment.w);
+        path.radiance += path.throughput * render.environment.xyz * weight;
+        if (path.depth == 0u) film.mean.w += 1.0;
+    }
+}
+
+// The sample's part of the AOVs, which are in the buffer alone: a camera ray meets a surface once a sample.
+void recordFirstHit(Surface surface, vec3 albedo) {
+    uint lane = gl_GlobalInvocationID.x;
+    float depth = dot(surface.position - render.cameraPosition.xyz, render.cameraForward.xyz);
+    aovs[lane].albedoDepth += vec4(albedo, depth);
+    aovs[lane].normal += vec4(surface.shading, 0.0);
+    aovs[lane].primitiveId[path.sampleIndex / 4u][path.sampleIndex % 4u] = surface.id;
+}
+
+void clearAovs() {
+    uint lane = gl_GlobalInvocationID.x;
+    aovs[lane].albedoDepth = vec4(0.0);
+    aovs[lane].normal = vec4(0.0);
+    aovs[lane].primitiveId = uvec4[4](uvec4(kNone), uvec4(kNone), uvec4(kNone), uvec4(kNone));
+}
+
+// Samples a light and leaves a pending shadow ray in the path if it could contribute. Its limit; 0 without one.
+float sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
     uvec4 random = randomBlock(1u + 2u * path.depth);
     uint chosen = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
     if (chosen >= render.depthLights.w) film.faults.z += 1u;
@@ -118,14 +149,14 @@ bool sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
                                     vec2(unitReal(random.z), unitReal(random.w)));
     float cosine = light.pdf > 0.0 ? lambertianCosine(surface.facing, surface.shading, light.direction) : 0.0;
     if (cosine > 0.0) {
-        float weight = powerHeuristic(light.pdf, lambertianPdf(cosine));
+        float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, lambertianPdf(cosine));
         path.shadowRadiance = path.throughput * lambertianEval(baseColor) * light.emission * (cosine / light.pdf * weight);
-        path.shadowDirection = light.target - origin;
+        path.shadowDirection = light.way;
         path.shadowPrimitive = light.primitive;
     } else {
         recordEvent(kSignatureNoRay);
     }
-    return cosine > 0.0;
+    return cosine > 0.0 ? light.limit : 0.0;
 }
 
 // Whether roulette lets the path live; it then stands for those that were ended.
@@ -164,10 +195,13 @@ void goOnOrEnd() {
 
 void shadeHit(RayTransform transform) {
     Surface surface = surfaceAt(path.traversal.primitive, path.ray, transform, path.traversal.distance, kSpheres);
-    if (path.depth == 0u) film.mean.w += 1.0;
     recordEvent(surface.id);
     if (surface.material >= render.sceneCounts.z) film.faults.z += 1u;
     MaterialRecord material = readMaterial(render.tableOffsets.x, min(surface.material, render.sceneCounts.z - 1u));
+    if (path.depth == 0u) {
+        film.mean.w += 1.0;
+        if (kAovs) recordFirstHit(surface, material.baseColor.xyz);
+    }
     addEmission(surface, material, path.traversal.distance);
     if (path.depth >= render.depthLights.x) {
         path.ending = kEnds;
@@ -175,13 +209,13 @@ void shadeHit(RayTransform transform) {
     } else {
         vec3 origin = offsetOrigin(surface.position, surface.error, surface.facing);
         bool lit = kLights != kLightsNone && render.depthLights.w > 0u;
-        bool shadow = lit && sampleDirect(surface, origin, material.baseColor.xyz);
+        float shadowLimit = lit ? sampleDirect(surface, origin, material.baseColor.xyz) : 0.0;
         path.ending = scatter(surface, material.baseColor.xyz);
         path.ray.origin = origin;
         path.leaves = surface.planar ? path.traversal.primitive : kNone;
-        if (shadow) {
+        if (shadowLimit > 0.0) {
             path.phase = kPhaseShadow;
-            path.traversal = beginTraversal(1.0, render.sceneCounts.x);
+            path.traversal = beginTraversal(shadowLimit, render.sceneCounts.x);
         } else {
             goOnOrEnd();
         }
@@ -212,6 +246,7 @@ void advance(inout uint budget) {
             finishShadow();
         } else if (path.traversal.primitive == kNone) {
             recordEvent(kNone);
+            addEnvironment();
             path.ending = kEnds;
             goOnOrEnd();
         } else {
@@ -258,6 +293,7 @@ void storePath(uint lane) {
 void startOrResume(uint lane) {
     if (parameters.batch.w != 0u) {
         film = FilmRecord(vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u));
+        if (kAovs) clearAovs();
         path.sampleIndex = 0u;
         beginSample();
     } else {

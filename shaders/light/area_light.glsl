@@ -1,32 +1,12 @@
-// Area lights: choosing one, sampling a point or direction on it, and the density of doing so.
+// Area lights: sampling a point or direction on one, and the density of doing so.
 #ifndef ISOLUX_LIGHT_AREA_LIGHT_GLSL
 #define ISOLUX_LIGHT_AREA_LIGHT_GLSL
 
 #include "core/math.glsl"
-#include "core/philox.glsl"
-#include "core/scene_access.glsl"
 #include "geometry/ray.glsl"
-#include "shared/interface.h"
+#include "light/light_sample.glsl"
 
-layout(constant_id = 4) const uint kLights = kLightsMany;
-
-struct LightSample {
-    vec3 target;    // the point on the light, moved off it towards the shading point
-    vec3 direction; // unit, towards it
-    float pdf;      // solid angle, choice of light included; 0: the sample does not light the point
-    vec3 emission;
-    uint primitive; // a convex emitter cannot hide the point of it that is seen, so the shadow ray ignores it
-};
-
-uint chooseLight(uint binOffset, uint bits, uint binWord, uint aliasWord) {
-    uint light = 0u;
-    if (kLights == kLightsMany) {
-        uint bin = bits == 0u ? 0u : binWord >> (32u - bits);
-        uvec2 entry = fetchTable(binOffset + bin).xy;
-        light = aliasWord < entry.x ? bin : entry.y;
-    }
-    return light;
-}
+bool emitsTwoSided(LightRecord light) { return (floatBitsToUint(light.emissionKind.w) & kLightTwoSidedBit) != 0u; }
 
 // Density in solid angle of a uniform point on a triangle.
 float trianglePdf(float choice, float area, float distanceSquared, float cosine) {
@@ -53,10 +33,10 @@ LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
     LightSample result;
     result.direction = toLight * inversesqrt(distanceSquared);
     float cosine = -dot(result.direction, normal); // positive: seen from the front
-    bool emits = cosine > 0.0 || (cosine < 0.0 && light.emission.w != 0.0);
+    bool emits = cosine > 0.0 || (cosine < 0.0 && emitsTwoSided(light));
     // An area that float cannot hold belongs to a triangle that no ray can hit either.
     result.pdf = emits && light.p2Area.w > 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
-    result.target = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal);
+    result.way = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal) - from;
     return result;
 }
 
@@ -71,11 +51,11 @@ LightSample sampleSphereFromInside(LightRecord light, vec3 from, vec2 u) {
     LightSample result;
     result.direction = toLight * inversesqrt(distanceSquared);
     float cosine = dot(result.direction, normal); // positive: the inner face is seen
-    bool emits = cosine < 0.0 || light.emission.w != 0.0;
+    bool emits = cosine < 0.0 || emitsTwoSided(light);
     result.pdf = emits && cosine != 0.0
                      ? light.p1Choice.w * distanceSquared / (4.0 * kPi * radius * radius * abs(cosine)) : 0.0;
     vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
-    result.target = offsetOrigin(point, error, cosine > 0.0 ? -normal : normal);
+    result.way = offsetOrigin(point, error, cosine > 0.0 ? -normal : normal) - from;
     return result;
 }
 
@@ -99,7 +79,7 @@ LightSample sampleSphereFromOutside(LightRecord light, vec3 from, vec2 u, float 
     vec3 onRay = from + (distanceToCenter * (1.0 - oneMinusCosine) - halfChord) * result.direction;
     vec3 normal = normalize(onRay - light.p0Primitive.xyz);
     vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
-    result.target = offsetOrigin(light.p0Primitive.xyz + radius * normal, error, normal);
+    result.way = offsetOrigin(light.p0Primitive.xyz + radius * normal, error, normal) - from;
     return result;
 }
 
@@ -109,9 +89,9 @@ float sphereSineSquared(LightRecord light, vec3 from) {
     return light.p1Choice.x * light.p1Choice.x / dot(toCenter, toCenter);
 }
 
-LightSample sampleLight(LightRecord light, vec3 from, vec2 u) {
+LightSample sampleAreaLight(LightRecord light, vec3 from, vec2 u) {
     LightSample result;
-    if (light.p2Area.w >= 0.0) {
+    if ((floatBitsToUint(light.emissionKind.w) & kLightKindMask) == kLightTriangle) {
         result = sampleTriangle(light, from, u);
     } else {
         float sineSquared = sphereSineSquared(light, from);
@@ -121,19 +101,22 @@ LightSample sampleLight(LightRecord light, vec3 from, vec2 u) {
             result = sampleSphereFromInside(light, from, u);
         }
     }
-    result.emission = light.emission.xyz;
+    result.limit = 1.0;
+    result.emission = light.emissionKind.xyz;
     result.primitive = floatBitsToUint(light.p0Primitive.w);
+    result.delta = false;
     return result;
 }
 
-// The density with which sampleLight would have chosen the point of a light that a ray from `from` has hit.
-float lightPdf(LightRecord light, vec3 from, float distance, float cosine) {
+// The density with which sampleAreaLight would have chosen the point of a light that a ray from `from` has hit.
+float areaLightPdf(LightRecord light, vec3 from, float distance, float cosine) {
     float sineSquared = sphereSineSquared(light, from);
     float radius = light.p1Choice.x;
     float fromOutside = light.p1Choice.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared));
     float fromInside = light.p1Choice.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
     float ofSphere = sineSquared < 1.0 ? fromOutside : fromInside;
-    return light.p2Area.w >= 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
+    bool triangle = (floatBitsToUint(light.emissionKind.w) & kLightKindMask) == kLightTriangle;
+    return triangle ? trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
 }
 
 #endif

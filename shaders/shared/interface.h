@@ -19,6 +19,7 @@ ISOLUX_CONSTANT uint kBindStack = 11u;
 ISOLUX_CONSTANT uint kBindCompletion = 12u;
 ISOLUX_CONSTANT uint kBindRays = 13u; // intersection kernel: rays in, hits out
 ISOLUX_CONSTANT uint kBindHits = 14u;
+ISOLUX_CONSTANT uint kBindAovs = 15u;
 
 ISOLUX_CONSTANT uint kSpecWorkgroupSize = 0u;
 ISOLUX_CONSTANT uint kSpecTexelBuffers = 1u;
@@ -29,6 +30,10 @@ ISOLUX_CONSTANT uint kSpecSmoothNormals = 5u;
 ISOLUX_CONSTANT uint kSpecRoulette = 6u;
 ISOLUX_CONSTANT uint kSpecPathSignatures = 7u;
 ISOLUX_CONSTANT uint kSpecBruteForce = 8u; // intersection kernel only
+ISOLUX_CONSTANT uint kSpecAreaLights = 9u;
+ISOLUX_CONSTANT uint kSpecPunctualLights = 10u;
+ISOLUX_CONSTANT uint kSpecEnvironment = 11u;
+ISOLUX_CONSTANT uint kSpecAovs = 12u;
 
 ISOLUX_CONSTANT uint kLightsNone = 0u;
 ISOLUX_CONSTANT uint kLightsOne = 1u;

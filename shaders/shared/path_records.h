@@ -12,7 +12,7 @@ struct PathRecord {
     vec4 directionDistance; // its direction; w: nearest distance found so far by an unfinished traversal
     vec4 throughput;        // w unused
     vec4 radiance;          // w unused
-    vec4 shadowDirection;   // from the origin to the light's point; w unused
+    vec4 shadowDirection;   // from the origin to the light's point, or towards a light at infinity; w unused
     vec4 shadowRadiance;    // what arrives if nothing is in between; w unused
     uvec4 progress;         // phase, sample within the batch, nearest primitive found so far, entries on the stack
     uvec4 bounce;           // bounces so far, ending, path signature; w unused
@@ -22,25 +22,36 @@ ISOLUX_CHECK_SIZE(PathRecord, 144);
 
 // Statistics of one batch of samples of one pixel.
 struct FilmRecord {
-    vec4 mean;             // rgb; w: samples whose camera ray met a surface
+    vec4 mean;             // rgb; w: samples whose camera ray met a surface or saw the environment
     vec4 squaredDeviation; // rgb, luminance
     uvec4 counts;          // samples, rays, sum of path signatures, samples that were NaN or infinite
     uvec4 faults;          // negative samples, stack overflows, invalid indices; w unused
 };
 ISOLUX_CHECK_SIZE(FilmRecord, 64);
 
+// What the camera rays of a batch met first. Sums over the samples that met a surface.
+ISOLUX_CONSTANT uint kAovBatchSamples = 16u;
+struct AovRecord {
+    vec4 albedoDepth;     // w: depth along the camera's axis, in device space
+    vec4 normal;          // w unused
+    uvec4 primitiveId[4]; // of each sample, or kNone
+};
+ISOLUX_CHECK_SIZE(AovRecord, 96);
+
 // Constant over a render.
 struct RenderParameters {
-    vec4 cameraPosition; // device space; w unused
-    vec4 cameraRight;    // scaled by aspect * tan(yfov / 2)
-    vec4 cameraUp;       // scaled by tan(yfov / 2)
-    vec4 cameraForward;
+    vec4 cameraPosition;    // device space; w: 1 for an orthographic camera, else 0
+    vec4 cameraRight;       // to the image's right edge: for a perspective camera at unit distance
+    vec4 cameraUp;          // to its top edge
+    vec4 cameraForward;     // unit
+    vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it
+    vec4 environmentLimits; // x: it emits from directions with y above this alone; y, z, w unused
     uvec4 imageSeed;    // width, height, seed low, seed high
     uvec4 depthLights;  // maximum depth, roulette start, bits of the alias table, number of lights
     uvec4 tableOffsets; // first word of materials, lights, light bins in the tables buffer; w unused
     uvec4 sceneCounts;  // x: nodes, z: materials; y, w unused
 };
-ISOLUX_CHECK_SIZE(RenderParameters, 128);
+ISOLUX_CHECK_SIZE(RenderParameters, 160);
 
 // Changes with every dispatch.
 struct DispatchParameters {

@@ -38,12 +38,17 @@ struct MaterialRecord {
 };
 ISOLUX_CHECK_SIZE(MaterialRecord, 32);
 
-// One area light, complete, so that sampling it touches nothing else. Sphere: p0 = centre, p1.x = radius, area = -1.
+// One light, complete, so that sampling it touches nothing else. What the words hold besides:
+//   triangle      its corners and area
+//   sphere        p0 = centre, p1.x = radius
+//   point, spot   p0 = position, p1 = direction, p2.xy = cosines of the inner and outer cone
+//   directional   p1 = direction in which the light travels
+//   environment   p2.x = 1 - y of the lowest direction that emits
 struct LightRecord {
-    vec4 p0Primitive; // w: index of its PrimitiveRecord, as bits
-    vec4 p1Choice;    // w: probability of choosing this light
-    vec4 p2Area;      // w: area of a triangle, -1 for a sphere
-    vec4 emission;    // w: 1 if the back face emits too
+    vec4 p0Primitive;  // w: index of its PrimitiveRecord or kNone, as bits
+    vec4 p1Choice;     // w: probability of choosing this light
+    vec4 p2Area;       // w: area of a triangle
+    vec4 emissionKind; // radiance, or what a punctual light sends in device space; w: one of kLight..., as bits
 };
 ISOLUX_CHECK_SIZE(LightRecord, 64);
 
@@ -55,6 +60,15 @@ ISOLUX_CHECK_SIZE(LightBinRecord, 16);
 
 ISOLUX_CONSTANT uint kNone = 0xFFFFFFFFu;
 ISOLUX_CONSTANT uint kSphereBit = 0x80000000u;
+
+ISOLUX_CONSTANT uint kLightTriangle = 0u;
+ISOLUX_CONSTANT uint kLightSphere = 1u;
+ISOLUX_CONSTANT uint kLightPoint = 2u;
+ISOLUX_CONSTANT uint kLightSpot = 3u;
+ISOLUX_CONSTANT uint kLightDirectional = 4u;
+ISOLUX_CONSTANT uint kLightEnvironment = 5u;
+ISOLUX_CONSTANT uint kLightKindMask = 0xFFu;
+ISOLUX_CONSTANT uint kLightTwoSidedBit = 0x100u; // the back face emits too
 
 // Words (of 16 bytes) a record.
 ISOLUX_CONSTANT uint kNodeWords = 4u;

@@ -42,9 +42,13 @@ TEST(StructLayout, PathKernel) {
                  {MEMBER(FilmRecord, mean), MEMBER(FilmRecord, squaredDeviation), MEMBER(FilmRecord, counts),
                   MEMBER(FilmRecord, faults)},
                  sizeof(shared::FilmRecord));
+    expectLayout(module, "AovRecord",
+                 {MEMBER(AovRecord, albedoDepth), MEMBER(AovRecord, normal), MEMBER(AovRecord, primitiveId)},
+                 sizeof(shared::AovRecord));
     expectLayout(module, "RenderParameters",
                  {MEMBER(RenderParameters, cameraPosition), MEMBER(RenderParameters, cameraRight),
                   MEMBER(RenderParameters, cameraUp), MEMBER(RenderParameters, cameraForward),
+                  MEMBER(RenderParameters, environment), MEMBER(RenderParameters, environmentLimits),
                   MEMBER(RenderParameters, imageSeed), MEMBER(RenderParameters, depthLights),
                   MEMBER(RenderParameters, tableOffsets), MEMBER(RenderParameters, sceneCounts)},
                  sizeof(shared::RenderParameters));

@@ -1,0 +1,31 @@
+// Lights without extent: point, spot, directional (KHR_lights_punctual).
+#ifndef ISOLUX_LIGHT_PUNCTUAL_LIGHT_GLSL
+#define ISOLUX_LIGHT_PUNCTUAL_LIGHT_GLSL
+
+#include "core/math.glsl"
+#include "light/light_sample.glsl"
+
+// The share of a spot's intensity at an angle to its axis: the square of a ramp in the cosine between the cones.
+float spotAttenuation(LightRecord light, float cosine) {
+    float t = clamp((cosine - light.p2Area.y) / (light.p2Area.x - light.p2Area.y), 0.0, 1.0);
+    return t * t;
+}
+
+LightSample samplePunctualLight(LightRecord light, vec3 from) {
+    uint kind = floatBitsToUint(light.emissionKind.w);
+    vec3 toLight = light.p0Primitive.xyz - from;
+    float distanceSquared = dot(toLight, toLight);
+    bool directional = kind == kLightDirectional;
+    LightSample result;
+    result.way = directional ? -light.p1Choice.xyz : toLight;
+    result.limit = directional ? kFarthest : 1.0;
+    result.direction = directional ? -light.p1Choice.xyz : toLight * inversesqrt(distanceSquared);
+    float share = kind == kLightSpot ? spotAttenuation(light, -dot(result.direction, light.p1Choice.xyz)) : 1.0;
+    result.emission = light.emissionKind.xyz * (directional ? 1.0 : share / distanceSquared);
+    result.pdf = share > 0.0 && (directional || distanceSquared > 0.0) ? light.p1Choice.w : 0.0;
+    result.delta = true;
+    result.primitive = kNone;
+    return result;
+}
+
+#endif
