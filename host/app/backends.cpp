@@ -31,18 +31,22 @@ void addStatistics(RunReport& report, const RenderStatistics& statistics) {
 }
 
 void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
-                    const ProgressCallback& progress) {
+                    ProgressBar& bar) {
+    bar.stage("opening the device");
     const Device device(options.device);
     report.deviceName = device.description().name;
     report.driverName = device.description().driverName;
     report.driverVersion = device.description().driverVersion;
     spdlog::debug("device {}: {}", device.description().name, device.description().driverVersion);
     RenderOptions renderOptions;
-    renderOptions.signatures = options.signatures;
+    renderOptions.aovs = options.aovs;
+    renderOptions.seconds = options.seconds;
+    renderOptions.dispatchSeconds = options.dispatchSeconds;
+    renderOptions.stage = [&](std::string_view name) { bar.stage(name); };
     PathRenderer renderer(device, run.scene, run.settings, renderOptions);
     try {
         const ScopedTimer timer(report.timings.render);
-        renderer.render(film, progress);
+        renderer.render(film, bar.callback());
     } catch (...) {
         addStatistics(report, renderer.statistics());
         throw;
@@ -52,12 +56,13 @@ void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const Ba
 }
 
 void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
-                       const ProgressCallback& progress) {
+                       ProgressBar& bar) {
     report.deviceName =
         options.precision == Precision::doublePrecision ? "CPU, double precision" : "CPU, single precision";
     const ScopedTimer timer(report.timings.render);
-    film =
-        renderReference(run.scene, run.settings, {options.precision, Intersector::bvh, options.signatures}, progress);
+    const ReferenceOptions reference{options.precision, Intersector::bvh, PathSignatures::off, options.aovs,
+                                     options.seconds};
+    film = renderReference(run.scene, run.settings, reference, bar.callback());
 }
 
 } // namespace
@@ -83,14 +88,13 @@ RunReport describeRun(const SceneRun& run, const SceneOptions& options) {
     return report;
 }
 
-void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
-                const ProgressCallback& progress) {
+void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options, ProgressBar& bar) {
     if (options.backend == Backend::vulkan) {
         report.backend = "vulkan";
-        renderOnDevice(film, report, run, options, progress);
+        renderOnDevice(film, report, run, options, bar);
     } else {
         report.backend = "reference";
-        renderOnProcessor(film, report, run, options, progress);
+        renderOnProcessor(film, report, run, options, bar);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "film/film.h"
 #include "reference/options.h"
+#include "render/path_renderer.h"
 #include "report/run_report.h"
 
 namespace isolux {
@@ -15,7 +16,9 @@ struct BackendOptions {
     Backend backend = Backend::vulkan;
     Precision precision = Precision::doublePrecision;
     DeviceOptions device;
-    PathSignatures signatures = PathSignatures::off;
+    Aovs aovs = Aovs::off;
+    std::optional<double> seconds; ///< time limit of the rendering itself
+    double dispatchSeconds = RenderOptions{}.dispatchSeconds;
 };
 
 /// A loaded scene with what is to be rendered of it.
@@ -32,7 +35,6 @@ struct SceneRun {
 
 /// Renders into `film` and adds device and timings to `report`. If it is interrupted, or a device fails, both tell how
 /// far it got.
-void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
-                const ProgressCallback& progress);
+void renderFilm(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options, ProgressBar& bar);
 
 } // namespace isolux

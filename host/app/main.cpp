@@ -18,6 +18,7 @@ int run(int argumentCount, char** arguments) {
     app.require_subcommand(1);
     app.footer("Examples:\n"
                "  isolux render scene.glb -o image.exr --spp 256\n"
+               "  isolux scene scene.glb\n"
                "  isolux verify scene.glb\n"
                "  isolux compare image.exr reference.exr --max-relative-bias 0.01\n"
                "`isolux COMMAND --help` shows a command's options.");
@@ -25,6 +26,7 @@ int run(int argumentCount, char** arguments) {
     isolux::addRenderCommand(app, result);
     isolux::addCompareCommand(app, result);
     isolux::addVerifyCommand(app, result);
+    isolux::addSceneCommand(app, result);
     isolux::addDevicesCommand(app, result);
     try {
         app.parse(argumentCount, arguments);

@@ -1,14 +1,16 @@
-// Progress on standard error: a bar on a terminal, a line every few seconds in a log; and the answer to Ctrl-C.
+// Progress on standard error: a bar on a terminal, a line every few seconds in a log, JSON lines for programs; and the
+// answer to Ctrl-C.
 #pragma once
 
 #include "core/progress.h"
 #include "core/stopwatch.h"
 
 #include <string>
+#include <string_view>
 
 namespace isolux {
 
-enum class ProgressDisplay { shown, hidden };
+enum class ProgressDisplay { shown, hidden, json };
 
 class ProgressBar {
 public:
@@ -17,13 +19,17 @@ public:
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
+    /// Says what is being done before there is a fraction of it: "compiling".
+    void stage(std::string_view name);
     /// For renderers: draws, and says `no` once the user has asked to stop.
     [[nodiscard]] ProgressCallback callback();
     [[nodiscard]] double elapsedSeconds() const { return watch_.seconds(); }
 
 private:
     void update(double fraction);
+    void print(const std::string& text);
     [[nodiscard]] std::string line(double fraction) const;
+    [[nodiscard]] std::string jsonLine(double fraction) const;
 
     std::string label_;
     ProgressDisplay display_;

@@ -37,7 +37,7 @@ ExitCode run(const RenderCommand& command) {
     {
         ProgressBar bar("rendering", command.scene.quiet ? ProgressDisplay::hidden : ProgressDisplay::shown);
         try {
-            renderFilm(film, report, scene, options, bar.callback());
+            renderFilm(film, report, scene, options, bar);
         } catch (const Error& error) {
             // What was finished before a device is lost or memory runs out is worth keeping.
             if (film.maxSampleCount() == 0) throw;

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 
 namespace isolux {
@@ -16,6 +17,53 @@ constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;
 
 std::uint32_t scaledEdge(double edge) {
     return static_cast<std::uint32_t>(std::clamp(std::round(edge), 1.0, static_cast<double>(kMaxEdge)));
+}
+
+/// "640x480"
+void parseSize(const std::string& text, RenderSettings& settings) {
+    const std::size_t cross = text.find('x');
+    const auto edge = [&](const std::string& digits) {
+        const bool number =
+            !digits.empty() && digits.size() < 7 && digits.find_first_not_of("0123456789") == std::string::npos;
+        if (!number) throwBadInput("--size", fmt::format("'{}' is not a size such as 640x480", text));
+        return static_cast<std::uint32_t>(std::stoul(digits));
+    };
+    settings.width = edge(text.substr(0, cross));
+    settings.height = edge(cross == std::string::npos ? "" : text.substr(cross + 1));
+}
+
+/// "0.5" or "1,0.9,0.8"
+Vec3d parseRadiance(const std::string& text) {
+    std::vector<double> numbers;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        double value = 0.0;
+        const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+        if (error != std::errc{} || stop != text.data() + end || !std::isfinite(value) || value < 0.0 ||
+            value > std::numeric_limits<float>::max())
+            throwBadInput("--environment", fmt::format("'{}' is not a radiance such as 1,1,1", text));
+        numbers.push_back(value);
+        begin = end + 1;
+    }
+    if (numbers.size() == 1) return Vec3d(numbers[0]);
+    if (numbers.size() != 3) throwBadInput("--environment", "give one number or three: R,G,B");
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// The camera of a number, of a name, or of the only name that contains the text.
+std::uint32_t findCamera(const Scene& scene, const std::string& text) {
+    if (text.empty()) return 0;
+    std::vector<std::uint32_t> matches;
+    std::string names;
+    for (std::uint32_t i = 0; i < scene.cameras.size(); ++i) {
+        const std::string& name = scene.cameras[i].name;
+        if (name == text || text == std::to_string(i)) return i;
+        if (name.find(text) != std::string::npos) matches.push_back(i);
+        names += fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, name);
+    }
+    if (matches.size() == 1) return matches.front();
+    throwBadInput("--camera", fmt::format("{} camera matches '{}'; there are: {}",
+                                          matches.empty() ? "no" : "more than one", text, names));
 }
 
 void checkSettings(const RenderSettings& settings) {
@@ -35,12 +83,23 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
     command.add_option("SCENE", options.file, "A glTF 2.0 file (.gltf or .glb)")->required();
     command.add_option("--spp,--samples", options.samples, "Samples a pixel")->capture_default_str();
     command.add_option("--first-sample", options.firstSample, "Index of the first sample")->capture_default_str();
-    command.add_option("--width", options.width, "Image width in pixels");
-    command.add_option("--height", options.height, "Image height; by default from the width and the camera");
+    CLI::Option* width = command.add_option("--width", options.width, "Image width in pixels");
+    CLI::Option* height =
+        command.add_option("--height", options.height, "Image height; by default from the width and the camera");
+    command.add_option("--size", options.size, "Both, as WxH")->excludes(width)->excludes(height);
+    command.add_option("--camera", options.camera, "Camera by number or part of its name (default: the first)");
+    command.add_option("--environment", options.environment,
+                       "Constant radiance from all directions, R,G,B or one number, instead of the file's");
     command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
     command.add_option("--max-depth", options.maxDepth,
                        "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
     command.add_option("--device", options.device, "Vulkan device by number or part of its name (default: the best)");
+    command.add_option("--dispatch-ms", options.dispatchMilliseconds, "How long one dispatch should last, about")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
+    command.add_option("--progress", options.progress, "Bar or lines, JSON lines for programs, or nothing")
+        ->check(CLI::IsMember({"auto", "json", "none"}))
+        ->capture_default_str();
     command.add_flag("--validation", options.validation,
                      "Run under the Vulkan validation layers; any message is a failure");
     command.add_flag("-q,--quiet", options.quiet, "Print errors alone");
@@ -51,20 +110,29 @@ Scene loadScene(const SceneOptions& options) {
     setVerbosity(options.quiet ? Verbosity::quiet : options.verbose ? Verbosity::verbose : Verbosity::normal);
     Scene scene = loadScene(std::filesystem::path(options.file));
     for (const std::string& warning : scene.warnings) spdlog::warn("{}: {}", options.file, warning);
+    if (!options.environment.empty())
+        scene.environment = {parseRadiance(options.environment), EnvironmentExtent::sphere};
     return scene;
 }
 
 RenderSettings settingsFor(const Scene& scene, const SceneOptions& options, std::uint32_t defaultWidth) {
     RenderSettings settings;
+    settings.camera = findCamera(scene, options.camera);
     const double aspect = scene.cameras.at(settings.camera).aspectRatio.value_or(4.0 / 3.0);
     settings.width = options.width.value_or(options.height ? scaledEdge(*options.height * aspect) : defaultWidth);
     settings.height = options.height.value_or(scaledEdge(settings.width / aspect));
+    if (!options.size.empty()) parseSize(options.size, settings);
     settings.seed = options.seed;
     settings.firstSample = options.firstSample;
     settings.sampleCount = options.samples;
     settings.maxDepth = options.maxDepth.value_or(kUnlimitedDepth);
     checkSettings(settings);
     return settings;
+}
+
+ProgressDisplay progressDisplay(const SceneOptions& options) {
+    if (options.progress == "json") return ProgressDisplay::json;
+    return options.quiet || options.progress == "none" ? ProgressDisplay::hidden : ProgressDisplay::shown;
 }
 
 DeviceOptions deviceOptions(const SceneOptions& options) {

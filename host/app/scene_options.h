@@ -1,6 +1,7 @@
 // The options that say what to render and on which device, shared by the commands that render.
 #pragma once
 
+#include "app/progress_bar.h"
 #include "gpu/device.h"
 #include "load/gltf.h"
 #include "scene/render_settings.h"
@@ -18,11 +19,16 @@ struct SceneOptions {
     std::string file;
     std::optional<std::uint32_t> width;
     std::optional<std::uint32_t> height;
+    std::string size;        ///< "WxH" instead of the two
+    std::string camera;      ///< number or part of a name; empty: the first
+    std::string environment; ///< "R,G,B" or one number; empty: what the file has
     std::optional<std::uint32_t> maxDepth;
     std::uint32_t samples = 64;
     std::uint32_t firstSample = 0;
     std::uint64_t seed = 0;
     std::string device;
+    double dispatchMilliseconds = 70.0;
+    std::string progress = "auto";
     bool validation = false;
     bool quiet = false;
     bool verbose = false;
@@ -31,13 +37,16 @@ struct SceneOptions {
 /// Adds SCENE, --spp, --width, --seed and the others, with `options`' values as defaults.
 void addSceneOptions(CLI::App& command, SceneOptions& options);
 
-/// Loads the scene and logs its warnings.
+/// Loads the scene, logs its warnings and puts in the environment that the options give.
 [[nodiscard]] Scene loadScene(const SceneOptions& options);
 
-/// Settings for the scene's first camera: a size that is not given follows from the other by the camera's aspect ratio,
-/// `defaultWidth` if neither is. Throws Error if the image or the range of samples is empty or too large.
+/// Settings for the camera that the options name: a size that is not given follows from the other by the camera's
+/// aspect ratio, `defaultWidth` if neither is. Throws Error if there is no such camera, or the image or the range of
+/// samples is empty or too large.
 [[nodiscard]] RenderSettings settingsFor(const Scene& scene, const SceneOptions& options, std::uint32_t defaultWidth);
 
 [[nodiscard]] DeviceOptions deviceOptions(const SceneOptions& options);
+
+[[nodiscard]] ProgressDisplay progressDisplay(const SceneOptions& options);
 
 } // namespace isolux

@@ -50,10 +50,11 @@ bool passes(const Outcome& outcome, const VerifyCommand& command) {
 
 std::optional<Outcome> compareBackends(const VerifyCommand& command) {
     const SceneRun run = openScene(command.scene, kDefaultWidth);
-    const ProgressDisplay display = command.scene.quiet ? ProgressDisplay::hidden : ProgressDisplay::shown;
+    const ProgressDisplay display = progressDisplay(command.scene);
     const Device device(deviceOptions(command.scene));
     RenderOptions options;
     options.signatures = PathSignatures::on;
+    options.dispatchSeconds = 1e-3 * command.scene.dispatchMilliseconds;
     PathRenderer renderer(device, run.scene, run.settings, options);
     Outcome outcome;
     outcome.device = fmt::format("{} ({})", device.description().name, device.description().driverVersion);

@@ -66,7 +66,9 @@ public:
                                                    WideChild::kMaxFirst - 1));
         for (const Instance& instance : scene_.instances) addInstance(instance);
         for (const Sphere& sphere : scene_.spheres) addSphere(sphere);
-        const WideBvh wide = buildWideBvh(buildBvh(primitives_.boxes));
+        const Bvh bvh = buildBvh(primitives_.boxes);
+        packed_.bvh = statistics(bvh);
+        const WideBvh wide = buildWideBvh(bvh);
         addNodes(wide);
         orderByLeaves(wide.primitives);
         addTables(wide.primitives);

@@ -1,6 +1,7 @@
 // A scene in the form that kernels read: the records of shaders/shared, in device space.
 #pragma once
 
+#include "accel/bvh.h"
 #include "scene/render_settings.h"
 #include "scene/scene.h"
 
@@ -34,6 +35,7 @@ struct PackedScene {
     double environmentPdf = 0.0;   ///< of light sampling, per solid angle; 0 if it never chooses the environment
     std::vector<std::uint32_t> firstOfObject; ///< first primitive id of each instance and each sphere, in scene order
     std::uint32_t stackBound = 1;             ///< entries a traversal stack must hold
+    BvhStatistics bvh;                        ///< of the binary tree that `nodes` was made from
     DeviceSpace space;
 };
 

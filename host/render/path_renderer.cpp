@@ -44,6 +44,10 @@ template <typename Record> std::span<const Record> recordsIn(const Buffer& buffe
 PathRenderer::PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings,
                            const RenderOptions& options)
     : device_(device), options_(options), samples_{settings.firstSample, settings.sampleCount}, runner_(device) {
+    const auto announce = [&](std::string_view name) {
+        if (options.stage) options.stage(name);
+    };
+    announce("building the BVH");
     Stopwatch packing;
     PackedScene packed = packScene(scene);
     statistics_.features = options.features.value_or(findFeatures(scene, settings));
@@ -54,6 +58,7 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     worldPerDevice_ = 1.0 / packed.space.scale;
     statistics_.packSeconds = packing.seconds();
 
+    announce("uploading");
     Stopwatch uploading;
     scene_ = std::make_unique<DeviceScene>(device, runner_, packed, options.readPath);
     statistics_.sceneBytes = scene_->bytes();
@@ -61,6 +66,7 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     writeParameters();
     statistics_.uploadSeconds = uploading.seconds();
 
+    announce("compiling");
     Stopwatch compiling;
     createKernel();
     statistics_.compileSeconds = compiling.seconds();

@@ -11,8 +11,11 @@
 
 #include "shared/path_records.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace isolux {
 
@@ -22,9 +25,10 @@ struct RenderOptions {
     ReadPath readPath = ReadPath::automatic;
     PathSignatures signatures = PathSignatures::off;
     Aovs aovs = Aovs::off;
-    std::optional<double> seconds;         ///< stop after about this time, at least one sample a pixel
-    std::optional<SceneFeatures> features; ///< instead of what the scene needs (for tests and benchmarks)
-    std::optional<std::uint32_t> maxLanes; ///< instead of what suits the device
+    std::function<void(std::string_view)> stage; ///< told what is being prepared; may be empty
+    std::optional<double> seconds;               ///< stop after about this time, at least one sample a pixel
+    std::optional<SceneFeatures> features;       ///< instead of what the scene needs (for tests and benchmarks)
+    std::optional<std::uint32_t> maxLanes;       ///< instead of what suits the device
 };
 
 struct RenderStatistics {
