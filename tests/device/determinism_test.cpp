@@ -111,5 +111,28 @@ TEST_F(Determinism, AnInterruptedRenderKeepsWholeTiles) {
     for (const PixelStatistics& pixel : film.pixels) EXPECT_EQ(pixel.sampleCount % kBatchSamples, 0u);
 }
 
+/// A time limit decides how many samples there are, and nothing else: every pixel has as many, at least one.
+TEST_F(Determinism, ATimeLimitStopsAllPixelsAtTheSameSample) {
+    const Scene scene = loadScene(projectScene("cornell_box"));
+    RenderSettings settings = imageSettings(64, 64, 1u << 20);
+    RenderOptions options;
+    options.maxLanes = 1024;
+    for (const double seconds : {0.0, 1.0}) {
+        options.seconds = seconds;
+        const Film film = render(scene, settings, options);
+        EXPECT_GE(film.minSampleCount(), 1u);
+        EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
+        EXPECT_LT(film.maxSampleCount(), settings.sampleCount);
+        if (seconds == 0.0) EXPECT_EQ(film.maxSampleCount(), 1u);
+        // Batches differ in size, so that sums differ in rounding alone: 2^-24 of a sum of some tens of samples.
+        settings.sampleCount = static_cast<std::uint32_t>(film.maxSampleCount());
+        const Film whole = render(scene, settings);
+        settings.sampleCount = 1u << 20;
+        for (std::size_t i = 0; i < film.pixels.size(); ++i)
+            EXPECT_NEAR(luminance(film.pixels[i].mean), luminance(whole.pixels[i].mean),
+                        64 * 6e-8 * (1.0 + luminance(whole.pixels[i].mean)));
+    }
+}
+
 } // namespace
 } // namespace isolux::test

@@ -1,0 +1,164 @@
+// Punctual lights, the environment, orthographic cameras and first hits: the device against the reference, path by
+// path.
+#include "device/paired_fixture.h"
+
+#include "load/gltf.h"
+
+namespace isolux::test {
+namespace {
+
+class Lights : public Paired {
+protected:
+    /// The Cornell spheres with their lamp switched off: three walls, a floor, two spheres, an open front.
+    [[nodiscard]] static Scene darkRoom() {
+        Scene scene = loadScene(projectScene("cornell_spheres"));
+        for (Material& material : scene.materials) material.emission = Vec3d(0.0);
+        return scene;
+    }
+
+    [[nodiscard]] static PunctualLight light(PunctualKind kind, const Vec3d& position, const Vec3d& intensity) {
+        PunctualLight light;
+        light.name = "light";
+        light.kind = kind;
+        light.position = position;
+        light.direction = glm::normalize(Vec3d(0.2, -1.0, -0.3));
+        light.intensity = intensity;
+        light.cosInner = std::cos(0.3);
+        light.cosOuter = std::cos(0.7);
+        return light;
+    }
+};
+
+TEST_F(Lights, EachPunctualKind) {
+    for (const PunctualKind kind : {PunctualKind::point, PunctualKind::spot, PunctualKind::directional}) {
+        Scene scene = darkRoom();
+        scene.punctualLights = {light(kind, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0, 2.0, 1.0))};
+        SCOPED_TRACE(static_cast<int>(kind));
+        expectAgreement(scene, imageSettings(96, 96, 16));
+    }
+}
+
+TEST_F(Lights, Environment) {
+    for (const EnvironmentExtent extent : {EnvironmentExtent::sphere, EnvironmentExtent::upperHalf}) {
+        Scene scene = darkRoom();
+        scene.environment = {Vec3d(0.9, 1.0, 1.2), extent};
+        SCOPED_TRACE(static_cast<int>(extent));
+        expectAgreement(scene, imageSettings(96, 96, 16));
+    }
+}
+
+/// Every kind in one table, and a directional light from outside the room.
+TEST_F(Lights, AllTogether) {
+    Scene scene = loadScene(projectScene("cornell_spheres"));
+    scene.environment = {Vec3d(0.2, 0.3, 0.4), EnvironmentExtent::upperHalf};
+    scene.punctualLights = {light(PunctualKind::point, Vec3d(-0.6, 0.9, 0.5), Vec3d(0.5)),
+                            light(PunctualKind::spot, Vec3d(0.5, 1.9, 0.0), Vec3d(4.0, 1.0, 1.0)),
+                            light(PunctualKind::directional, Vec3d(0.0), Vec3d(0.5, 0.5, 0.8)),
+                            light(PunctualKind::point, Vec3d(0.0, 1.0, 0.0), Vec3d(0.0))};
+    expectAgreement(scene, imageSettings(96, 96, 16));
+}
+
+/// Nothing but environment: every pixel shows it, in either projection.
+TEST_F(Lights, EnvironmentWithoutAnySurface) {
+    Scene scene;
+    scene.environment = {Vec3d(0.25, 0.5, 1.0), EnvironmentExtent::sphere};
+    scene.cameras = {Camera{}};
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        scene.cameras[0].projection = projection;
+        for (const PixelStatistics& pixel : render(scene, imageSettings(16, 16, 4)).pixels) {
+            EXPECT_EQ(pixel.mean, Vec3d(0.25, 0.5, 1.0));
+            EXPECT_EQ(pixel.hitCount, 4u);
+        }
+    }
+}
+
+TEST_F(Lights, OrthographicCamera) {
+    Scene scene = loadScene(projectScene("cornell_spheres"));
+    scene.cameras[0].projection = Projection::orthographic;
+    scene.cameras[0].ymag = 1.1;
+    scene.cameras[0].position = Vec3d(0.1, 1.0, 30.0);
+    expectAgreement(scene, imageSettings(120, 96, 16));
+}
+
+/// A point light's fall-off is in the world's unit, whatever the device's; a power of two must not change a bit.
+TEST_F(Lights, FallOffFollowsTheWorldsScale) {
+    Scene scene = darkRoom();
+    scene.punctualLights = {light(PunctualKind::point, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0))};
+    const RenderSettings settings = imageSettings(48, 48, 8);
+    const Film film = render(scene, settings);
+    const double scale = 1024.0;
+    Mat4d scaling(1.0);
+    for (int axis = 0; axis < 3; ++axis) scaling[axis][axis] = scale;
+    for (Instance& instance : scene.instances) instance.worldFromObject = scaling * instance.worldFromObject;
+    for (Sphere& sphere : scene.spheres)
+        sphere = {sphere.name, sphere.center * scale, sphere.radius * scale, sphere.material};
+    scene.cameras[0].position *= scale;
+    scene.punctualLights[0].position *= scale;
+    scene.punctualLights[0].intensity *= scale * scale;
+    EXPECT_EQ(differingPixels(film, render(scene, settings)), 0u);
+}
+
+TEST_F(Lights, LeavingKindsOutChangesNothing) {
+    Scene punctual = darkRoom();
+    punctual.punctualLights = {light(PunctualKind::spot, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0)),
+                               light(PunctualKind::point, Vec3d(-0.3, 1.0, 0.2), Vec3d(1.0))};
+    Scene environment = darkRoom();
+    environment.environment.radiance = Vec3d(1.0);
+    for (const Scene& scene : {punctual, environment}) {
+        const RenderSettings settings = imageSettings(40, 40, 16);
+        RenderOptions options;
+        options.features = SceneFeatures{};
+        const Film full = render(scene, settings, options);
+        EXPECT_FALSE(findFeatures(scene, settings) == *options.features);
+        EXPECT_EQ(differingPixels(full, render(scene, settings)), 0u);
+    }
+}
+
+class FirstHits : public Paired {};
+
+/// Sums over the same camera rays: albedo and coverage to the last bit, depth and normal to float's rounding.
+TEST_F(FirstHits, AreThoseOfTheReference) {
+    Scene scene = loadScene(projectScene("cornell_spheres"));
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        scene.cameras[0].projection = projection;
+        const RenderSettings settings = imageSettings(64, 48, 20);
+        RenderOptions options;
+        options.aovs = Aovs::on;
+        const Film film = render(scene, settings, options);
+        const Film reference = renderReference(
+            scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::off, Aovs::on}, {});
+        ASSERT_EQ(film.aovs.size(), film.pixels.size());
+        std::size_t otherObjects = 0;
+        for (std::size_t i = 0; i < film.aovs.size(); ++i) {
+            const PixelAovs& a = film.aovs[i];
+            const PixelAovs& b = reference.aovs[i];
+            if (!(a.objects == b.objects)) {
+                ++otherObjects; // a ray past an edge, to one side or the other
+                continue;
+            }
+            const double samples = 20.0;
+            // A batch adds up 16 floats: 15 roundings of at most the sum; the terms have a few of their own.
+            EXPECT_LT(maxComponent(glm::abs(a.albedo - b.albedo)), 32 * 6e-8 * samples);
+            // Where spheres are seen at a grazing angle, rounding of the point grows in the normal.
+            EXPECT_LT(maxComponent(glm::abs(a.normal - b.normal)), 2e-3 * samples);
+            EXPECT_NEAR(a.depth, b.depth, 1e-3 * samples);
+        }
+        EXPECT_LE(otherObjects, film.aovs.size() / 500);
+    }
+}
+
+TEST_F(FirstHits, CostTheImageNotABit) {
+    const Scene scene = loadScene(projectScene("cornell_spheres"));
+    const RenderSettings settings = imageSettings(67, 45, 20);
+    const Film without = render(scene, settings);
+    RenderOptions options;
+    options.aovs = Aovs::on;
+    options.dispatchSeconds = 1e-6;
+    const Film with = render(scene, settings, options);
+    EXPECT_TRUE(without.aovs.empty());
+    EXPECT_EQ(differingPixels(without, with), 0u);
+    for (std::size_t i = 0; i < with.aovs.size(); ++i) EXPECT_EQ(with.aovs[i].hitCount(), with.pixels[i].hitCount);
+}
+
+} // namespace
+} // namespace isolux::test

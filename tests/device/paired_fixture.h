@@ -1,0 +1,44 @@
+// The fixture of tests that hold the device against the double reference on the same random numbers.
+#pragma once
+
+#include "device/device_test.h"
+#include "reference/reference.h"
+#include "report/paired.h"
+
+#include <cmath>
+
+namespace isolux::test {
+
+inline constexpr double kTolerance = 1e-3;
+inline constexpr double kAgreement = 0.999;
+inline constexpr double kMaxRelativeBias = 1e-4;
+
+class Paired : public DeviceTest {
+protected:
+    PairedDifferences compare(const Scene& scene, const RenderSettings& settings) {
+        RenderOptions options;
+        options.signatures = PathSignatures::on;
+        const Film film = render(scene, settings, options);
+        const Film reference =
+            renderReference(scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, {});
+        const PairedDifferences differences = pairedDifferences(film, reference, {kTolerance, nullptr});
+        if (differences.differentSignatures == 0) {
+            EXPECT_EQ(film.rays, reference.rays);
+        }
+        if (differences.unexplained == 0) return differences;
+        const Film single = renderReference(scene, settings, {Precision::singlePrecision}, {});
+        return pairedDifferences(film, reference, {kTolerance, &single});
+    }
+
+    void expectAgreement(const Scene& scene, const RenderSettings& settings, double agreement = kAgreement) {
+        const PairedDifferences differences = compare(scene, settings);
+        SCOPED_TRACE(toText(differences));
+        EXPECT_GT(differences.litPixels, settings.width * settings.height / 10);
+        EXPECT_EQ(differences.unexplained, 0u);
+        EXPECT_GE(static_cast<double>(differences.withinTolerance),
+                  agreement * static_cast<double>(differences.litPixels));
+        EXPECT_LT(std::abs(differences.luminanceBias.estimate), kMaxRelativeBias);
+    }
+};
+
+} // namespace isolux::test
