@@ -1,9 +1,10 @@
-// Sampling of area lights: choosing one, choosing a point on it, and the density of having done so. Densities are in
-// solid angle and seen from the point where rays leave the surface, the only one that sampled and traced rays share.
+// Light sampling: choosing one of the scene's lights and a direction to it, and the density of having done so.
 #pragma once
 
 #include "core/philox.h"
-#include "reference/surface.h"
+#include "reference/area_lights.h"
+#include "reference/environment.h"
+#include "reference/punctual_lights.h"
 #include "scene/lights.h"
 
 #include <cstdint>
@@ -11,143 +12,53 @@
 
 namespace isolux {
 
-template <typename Real> struct LightSample {
-    Vec3<Real> wi;       ///< unit, towards the light
-    Real pdf = 0;        ///< solid angle, the choice of the light included
-    Vec3<Real> emission; ///< towards the receiver, never 0
-    Ray<Real> shadowRay; ///< ends at the light
-    std::uint32_t primitive = kNoPrimitive;
-};
-
-/// Radiance that a material emits from one of its sides.
-template <typename Real> [[nodiscard]] Vec3<Real> emissionFrom(const Material& material, Side side) {
-    const bool emits = side == Side::front || material.doubleSided;
-    return emits ? Vec3<Real>(material.emission) : Vec3<Real>(0);
-}
-
+/// All densities include the choice of the light. Keeps references.
 template <typename Real> class Lights {
 public:
     Lights(const Scene& scene, const World<Real>& world)
-        : scene_(scene), world_(world), table_(buildLightTable(scene)) {}
+        : scene_(scene), areaLights_(scene, world), table_(buildLightTable(scene)) {}
 
     [[nodiscard]] bool empty() const { return table_.lights.empty(); }
 
-    /// A point on a light, by the four words of a light block; none if it does not emit towards `receiver`.
+    /// A light and a direction to it, by the four words of a light block; none if it sends nothing to `receiver`.
     [[nodiscard]] std::optional<LightSample<Real>> sample(const Surface<Real>& receiver,
                                                           const PhiloxBlock& words) const {
         const std::uint32_t light = sampleAliasTable(table_.choice, words[0], words[1]);
-        const std::uint32_t primitive = table_.lights[light].index;
-        const Real u = unitReal<Real>(words[2]);
-        const Real v = unitReal<Real>(words[3]);
-        if (world_.isTriangle(primitive)) return sampleTriangleLight(receiver.origin, primitive, sampleTriangle(u, v));
-        if (sees(receiver.origin, world_.sphere(primitive)) == Side::front)
-            return sampleSphereOutside(receiver.origin, primitive, {u, v});
-        return sampleSphereInside(receiver.origin, primitive, sampleSphere(u, v));
+        const Vec2<Real> uv(unitReal<Real>(words[2]), unitReal<Real>(words[3]));
+        std::optional<LightSample<Real>> sample = sampleLight(table_.lights[light], receiver.origin, uv);
+        if (sample) sample->pdf *= choicePdf(light);
+        return sample;
     }
 
     /// Whether light sampling can find the primitive.
     [[nodiscard]] bool contains(std::uint32_t primitive) const { return table_.lightOf[primitive] != kNoLight; }
-
     /// The density with which light sampling from `origin` would have chosen the direction to `hit`, a light's surface.
     [[nodiscard]] Real pdf(const Vec3<Real>& origin, const Surface<Real>& hit) const {
-        if (world_.isTriangle(hit.primitive)) return trianglePdf(hit.primitive, hit.t, glm::dot(hit.wo, hit.ng));
-        const WorldSphere<Real>& sphere = world_.sphere(hit.primitive);
-        if (sees(origin, sphere) == Side::front) return conePdf(hit.primitive, coneHeightFrom(origin, sphere));
-        return spherePdf(hit.primitive, hit.t, glm::dot(hit.wo, hit.ng));
+        return choicePdf(table_.lightOf[hit.primitive]) * areaLights_.pdf(origin, hit);
+    }
+
+    /// Whether light sampling can find the environment: not in a scene without extent, which it cannot illuminate.
+    [[nodiscard]] bool containsEnvironment() const { return table_.environment != kNoLight; }
+    /// The density with which light sampling would have chosen any direction from which the environment emits.
+    [[nodiscard]] Real pdfOfEnvironment() const {
+        return choicePdf(table_.environment) * environmentPdf<Real>(scene_.environment);
     }
 
 private:
-    [[nodiscard]] const Material& materialOf(std::uint32_t primitive) const {
-        return scene_.materials[world_.materialOf(primitive)];
-    }
-    [[nodiscard]] Real choicePdf(std::uint32_t primitive) const {
-        return static_cast<Real>(table_.choice.pdf[table_.lightOf[primitive]]);
-    }
+    [[nodiscard]] Real choicePdf(std::uint32_t light) const { return static_cast<Real>(table_.choice.pdf[light]); }
 
-    /// The side of a sphere that a point sees. The same expression as the constant term of `intersectSphere`, so that
-    /// both agree for a point just off the sphere.
-    [[nodiscard]] static Side sees(const Vec3<Real>& point, const WorldSphere<Real>& sphere) {
-        const Vec3<Real> f = point - sphere.center;
-        return glm::dot(f, f) > sphere.radius * sphere.radius ? Side::front : Side::back;
-    }
-    [[nodiscard]] static Real coneHeightFrom(const Vec3<Real>& point, const WorldSphere<Real>& sphere) {
-        const Vec3<Real> f = point - sphere.center;
-        return coneHeight(sphere.radius * sphere.radius, glm::dot(f, f));
-    }
-
-    [[nodiscard]] Real trianglePdf(std::uint32_t primitive, Real distance, Real cosine) const {
-        const Real area = world_.triangles[primitive].area;
-        return choicePdf(primitive) * (distance * distance) / (area * std::abs(cosine));
-    }
-    [[nodiscard]] Real conePdf(std::uint32_t primitive, Real height) const {
-        return choicePdf(primitive) / (static_cast<Real>(2 * kPi) * height);
-    }
-    [[nodiscard]] Real spherePdf(std::uint32_t primitive, Real distance, Real cosine) const {
-        const Real radius = world_.sphere(primitive).radius;
-        const Real area = static_cast<Real>(4 * kPi) * radius * radius;
-        return choicePdf(primitive) * (distance * distance) / (area * std::abs(cosine));
-    }
-
-    /// A ray to a light's point, ending short of it by its error bound; the receiver is on the side `facing`.
-    [[nodiscard]] static Ray<Real> rayTo(const Vec3<Real>& origin, const BoundedPoint<Real>& point,
-                                         const Vec3<Real>& facing) {
-        const Vec3<Real> way = offsetPoint(point.position, point.error, facing) - origin;
-        const Real distance = glm::length(way);
-        return {origin, way / distance, distance};
-    }
-
-    [[nodiscard]] std::optional<LightSample<Real>>
-    sampleTriangleLight(const Vec3<Real>& origin, std::uint32_t primitive, const Vec3<Real>& barycentric) const {
-        const WorldTriangle<Real>& triangle = world_.triangles[primitive];
-        const BoundedPoint<Real> point = pointOnTriangle(triangle, barycentric);
-        const Vec3<Real> way = point.position - origin;
-        const Real distance = glm::length(way);
-        const Vec3<Real> wi = way / distance;
-        const Real cosine = -glm::dot(wi, triangle.ng);
-        const Side side = cosine > 0 ? Side::front : Side::back;
-        const Vec3<Real> emission = emissionFrom<Real>(materialOf(primitive), side);
-        if (!(distance > 0) || cosine == 0 || emission == Vec3<Real>(0)) return std::nullopt;
-        const Vec3<Real> facing = side == Side::front ? triangle.ng : -triangle.ng;
-        return LightSample<Real>{wi, trianglePdf(primitive, distance, cosine), emission, rayTo(origin, point, facing),
-                                 primitive};
-    }
-
-    [[nodiscard]] std::optional<LightSample<Real>>
-    sampleSphereOutside(const Vec3<Real>& origin, std::uint32_t primitive, const Vec2<Real>& uv) const {
-        const WorldSphere<Real>& sphere = world_.sphere(primitive);
-        const Vec3<Real> toCenter = sphere.center - origin;
-        const Real distance = glm::length(toCenter);
-        const Real height = coneHeightFrom(origin, sphere);
-        const Vec3<Real> local = sampleCone(height, uv.x, uv.y);
-        const Vec3<Real> wi = frameAbout(toCenter / distance).toWorld(local);
-        // The nearer root of t^2 - 2 t d cos + (d^2 - r^2) = 0, by the product of both: no cancellation next to the
-        // sphere.
-        const Real sinSquared = local.x * local.x + local.y * local.y;
-        const Real halfChord =
-            std::sqrt(std::max(Real(0), sphere.radius * sphere.radius - distance * distance * sinSquared));
-        const Real t = (distance - sphere.radius) * (distance + sphere.radius) / (distance * local.z + halfChord);
-        const Vec3<Real> onSphere = t * wi - toCenter;
-        const BoundedPoint<Real> point = pointOnSphere(sphere, onSphere);
-        return LightSample<Real>{wi, conePdf(primitive, height), emissionFrom<Real>(materialOf(primitive), Side::front),
-                                 rayTo(origin, point, glm::normalize(onSphere)), primitive};
-    }
-
-    [[nodiscard]] std::optional<LightSample<Real>> sampleSphereInside(const Vec3<Real>& origin, std::uint32_t primitive,
-                                                                      const Vec3<Real>& normal) const {
-        const WorldSphere<Real>& sphere = world_.sphere(primitive);
-        const BoundedPoint<Real> point = pointOnSphere(sphere, normal);
-        const Vec3<Real> way = point.position - origin;
-        const Real distance = glm::length(way);
-        const Vec3<Real> wi = way / distance;
-        const Real cosine = glm::dot(wi, normal);
-        const Vec3<Real> emission = emissionFrom<Real>(materialOf(primitive), Side::back);
-        if (!(distance > 0) || !(cosine > 0) || emission == Vec3<Real>(0)) return std::nullopt;
-        return LightSample<Real>{wi, spherePdf(primitive, distance, cosine), emission, rayTo(origin, point, -normal),
-                                 primitive};
+    [[nodiscard]] std::optional<LightSample<Real>> sampleLight(const Light& light, const Vec3<Real>& origin,
+                                                               const Vec2<Real>& uv) const {
+        switch (light.kind) {
+        case LightKind::area: return areaLights_.sample(origin, light.index, uv);
+        case LightKind::punctual: return samplePunctualLight(scene_.punctualLights[light.index], origin);
+        case LightKind::environment: return sampleEnvironment(scene_.environment, origin, uv);
+        }
+        return std::nullopt;
     }
 
     const Scene& scene_;
-    const World<Real>& world_;
+    AreaLights<Real> areaLights_;
     LightTable table_;
 };
 

@@ -1,10 +1,12 @@
 // One path: the six steps of "One path" in host/scene/README.md.
 #pragma once
 
+#include "film/film.h"
 #include "reference/camera.h"
 #include "reference/lights.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace isolux {
 
@@ -13,7 +15,8 @@ template <typename Real> struct PathResult {
     Vec3<Real> radiance{0};
     std::uint32_t signature = 2166136261u; ///< FNV-1a of the path's discrete events
     std::uint64_t rays = 0;
-    std::uint64_t cameraHits = 0; ///< 1 if the camera ray met a surface
+    std::uint64_t cameraHits = 0; ///< 1 if the camera ray met a surface, or an environment that emits there
+    std::optional<FirstHit> firstHit;
 
     void record(std::uint32_t event) { signature = (signature ^ event) * 16777619u; }
 };
@@ -30,8 +33,11 @@ public:
         Path path = start(stream);
         for (std::uint32_t bounce = 0;; ++bounce) {
             const std::optional<Surface<Real>> surface = findSurface(path);
-            if (!surface) break;
-            path.result.cameraHits = 1;
+            if (!surface) {
+                addEnvironment(path, bounce);
+                break;
+            }
+            if (bounce == 0) noteFirstHit(path.result, *surface);
             addEmission(path, *surface, bounce);
             if (bounce == settings_.maxDepth) break;
             if (!lights_.empty()) addDirectLight(path, *surface, stream.block(1 + 2 * bounce));
@@ -74,6 +80,23 @@ private:
         return hit ? std::optional(surfaceAt(world_, path.ray, *hit)) : std::nullopt;
     }
 
+    void noteFirstHit(PathResult<Real>& result, const Surface<Real>& surface) const {
+        result.cameraHits = 1;
+        result.firstHit =
+            FirstHit{materialAt(surface).baseColor, Vec3d(surface.ns),
+                     static_cast<double>(camera_.depth(surface.position)), world_.objectOf(surface.primitive)};
+    }
+
+    /// What the camera sees beyond every surface counts as met, so that it is opaque.
+    void addEnvironment(Path& path, std::uint32_t bounce) const {
+        const Vec3<Real> radiance = environmentRadiance(scene_.environment, path.ray.direction);
+        if (radiance == Vec3<Real>(0)) return;
+        if (bounce == 0) path.result.cameraHits = 1;
+        const bool onlyWay = bounce == 0 || !lights_.containsEnvironment();
+        const Real weight = onlyWay ? Real(1) : powerHeuristic(path.pdf, lights_.pdfOfEnvironment());
+        path.result.radiance += path.throughput * radiance * weight;
+    }
+
     void addEmission(Path& path, const Surface<Real>& surface, std::uint32_t bounce) const {
         const Vec3<Real> emission = emissionFrom<Real>(materialAt(surface), surface.side());
         if (emission == Vec3<Real>(0)) return;
@@ -98,7 +121,8 @@ private:
             return path.result.record(kBlocked);
         path.result.record(kReached);
         const Real cosine = glm::dot(light->wi, surface.ns);
-        const Real weight = powerHeuristic(light->pdf, cosine / static_cast<Real>(kPi));
+        const bool onlyWay = light->measure == Measure::discrete;
+        const Real weight = onlyWay ? Real(1) : powerHeuristic(light->pdf, cosine / static_cast<Real>(kPi));
         path.result.radiance += path.throughput * f * light->emission * (cosine / light->pdf * weight);
     }
 

@@ -2,6 +2,7 @@
 #include "reference/reference.h"
 
 #include "core/error.h"
+#include "core/pacing.h"
 #include "reference/path.h"
 
 #include <oneapi/tbb/blocked_range2d.h>
@@ -43,21 +44,28 @@ public:
     Renderer(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options,
              const PixelRegion& region)
         : world_(flatten<Real>(scene)), tracer_(scene, world_, settings, options.intersector), settings_(settings),
-          signatures_(options.signatures), region_(region), film_(region.width, region.height) {}
+          options_(options), region_(region), film_(region.width, region.height) {
+        if (options.aovs == Aovs::on) film_.keepAovs();
+    }
 
     [[nodiscard]] Film render(const ProgressCallback& progress) {
-        for (std::uint32_t done = 0; done < settings_.sampleCount;) {
-            // The first passes are short, so that a slow scene can be interrupted and still shows every pixel.
-            const std::uint32_t pass = std::min({std::max(done, 1u), kLargestPass, settings_.sampleCount - done});
+        const Pacing pacing(options_.seconds, kLargestPass);
+        std::uint32_t done = 0;
+        while (const std::uint32_t pass = nextPass(pacing, done)) {
             renderPass(settings_.firstSample + done, pass);
             done += pass;
-            const double fraction = static_cast<double>(done) / static_cast<double>(settings_.sampleCount);
-            if (progress && progress(fraction) == Continue::no) break;
+            if (progress && progress(pacing.fraction(done, settings_.sampleCount)) == Continue::no) break;
         }
         return std::move(film_);
     }
 
 private:
+    /// The first passes are short without a time limit too, so that a slow scene can be interrupted and still shows
+    /// every pixel.
+    [[nodiscard]] std::uint32_t nextPass(const Pacing& pacing, std::uint32_t done) const {
+        return std::min(std::max(done, 1u), pacing.nextPass(done, settings_.sampleCount));
+    }
+
     void renderPass(std::uint32_t firstSample, std::uint32_t sampleCount) {
         tbb::combinable<Counts> counts;
         const tbb::blocked_range2d<std::uint32_t> pixels(0, region_.height, kTileSize, 0, region_.width, kTileSize);
@@ -74,7 +82,9 @@ private:
 
     void takeSample(std::uint32_t x, std::uint32_t y, std::uint32_t sample, Counts& counts) {
         const PathResult<Real> path = tracer_.trace(region_.x + x, region_.y + y, sample);
-        addSample(film_.at(x, y), path, signatures_);
+        addSample(film_.at(x, y), path, options_.signatures);
+        if (path.firstHit && options_.aovs == Aovs::on)
+            film_.aovs[std::size_t{y} * film_.width + x].add(*path.firstHit);
         counts.rays += path.rays;
         diagnose(Vec3d(path.radiance), counts.diagnostics);
     }
@@ -82,7 +92,7 @@ private:
     World<Real> world_;
     PathTracer<Real> tracer_;
     RenderSettings settings_;
-    PathSignatures signatures_;
+    ReferenceOptions options_;
     PixelRegion region_;
     Film film_;
 };

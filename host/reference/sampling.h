@@ -71,6 +71,20 @@ template <typename Real> [[nodiscard]] Vec3<Real> sampleSphere(Real u, Real v) {
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
+/// Uniform direction about +y, from all directions.
+template <typename Real> [[nodiscard]] Vec3<Real> sampleSphereAboutY(Real u, Real v) {
+    const Real r = 2 * std::sqrt(u * (1 - u));
+    const Real phi = static_cast<Real>(2 * kPi) * v;
+    return {r * std::cos(phi), 1 - 2 * u, r * std::sin(phi)};
+}
+
+/// Uniform direction with y > 0.
+template <typename Real> [[nodiscard]] Vec3<Real> sampleUpperHalf(Real u, Real v) {
+    const Real r = std::sqrt(u * (2 - u));
+    const Real phi = static_cast<Real>(2 * kPi) * v;
+    return {r * std::cos(phi), 1 - u, r * std::sin(phi)};
+}
+
 /// Weight of a sample drawn with pdf `f` that could have been drawn with pdf `g` (Veach 1997, eq. 9.13, beta 2). By the
 /// ratio, since squares of large pdfs overflow.
 template <typename Real> [[nodiscard]] Real powerHeuristic(Real f, Real g) {

@@ -12,12 +12,13 @@ enum class Side { front, back };
 template <typename Real> struct Surface {
     std::uint32_t primitive = kNoPrimitive;
     std::uint32_t material = 0;
-    Vec3<Real> wo;     ///< back along the ray
-    Vec3<Real> ng;     ///< unit geometric normal on the front side
-    Vec3<Real> facing; ///< ng or -ng: on the side of wo
-    Vec3<Real> ns;     ///< unit shading normal on the side of wo
-    Vec3<Real> origin; ///< where rays leave from: off the surface, on the side of wo
-    Real t = 0;        ///< distance along the ray that found it
+    Vec3<Real> wo;       ///< back along the ray
+    Vec3<Real> ng;       ///< unit geometric normal on the front side
+    Vec3<Real> facing;   ///< ng or -ng: on the side of wo
+    Vec3<Real> ns;       ///< unit shading normal on the side of wo
+    Vec3<Real> position; ///< the hit point, as rounded
+    Vec3<Real> origin;   ///< where rays leave from: off the surface, on the side of wo
+    Real t = 0;          ///< distance along the ray that found it
 
     [[nodiscard]] Side side() const { return facing == ng ? Side::front : Side::back; }
 };
@@ -84,6 +85,7 @@ template <typename Real>
     }
     surface.facing = glm::dot(surface.wo, surface.ng) >= 0 ? surface.ng : -surface.ng;
     if (glm::dot(surface.ns, surface.facing) < 0) surface.ns = -surface.ns;
+    surface.position = point.position;
     surface.origin = offsetPoint(point.position, point.error, surface.facing);
     return surface;
 }

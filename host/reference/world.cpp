@@ -30,12 +30,13 @@ Mat3d normalMatrix(const Mat3d& m) {
 /// One mesh as one instance places it.
 struct Placement {
     const Mesh& mesh;
+    std::uint32_t object;
     Mat4d worldFromObject;
     Mat3d normalFromObject;
     bool mirrored; ///< the front is then the side seen clockwise (glTF 2.0, 3.7.4)
 
-    Placement(const Scene& scene, const Instance& instance)
-        : mesh(scene.meshes[instance.mesh]), worldFromObject(instance.worldFromObject),
+    Placement(const Scene& scene, const Instance& instance, std::uint32_t index)
+        : mesh(scene.meshes[instance.mesh]), object(index), worldFromObject(instance.worldFromObject),
           normalFromObject(normalMatrix(Mat3d(instance.worldFromObject))),
           mirrored(glm::determinant(Mat3d(instance.worldFromObject)) < 0.0) {}
 
@@ -52,6 +53,7 @@ void addTriangle(World<Real>& world, const Placement& placement, std::array<std:
     if (placement.mirrored) std::swap(vertices[1], vertices[2]);
     WorldTriangle<Real> triangle;
     triangle.material = placement.mesh.material;
+    triangle.object = placement.object;
     std::array<Vec3d, 3> kept; // everything follows from the corners as they are kept, or rays would leak
     Box3d bounds;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -70,8 +72,8 @@ void addTriangle(World<Real>& world, const Placement& placement, std::array<std:
     world.boxes.push_back(roundOutward(bounds));
 }
 
-template <typename Real> void addSphere(World<Real>& world, const Sphere& sphere) {
-    world.spheres.push_back({Vec3<Real>(sphere.center), static_cast<Real>(sphere.radius), sphere.material});
+template <typename Real> void addSphere(World<Real>& world, const Sphere& sphere, std::uint32_t object) {
+    world.spheres.push_back({Vec3<Real>(sphere.center), static_cast<Real>(sphere.radius), sphere.material, object});
     const Vec3d center(world.spheres.back().center);
     const Vec3d radius(static_cast<double>(world.spheres.back().radius));
     world.boxes.push_back(roundOutward({center - radius, center + radius}));
@@ -81,11 +83,12 @@ template <typename Real> void addSphere(World<Real>& world, const Sphere& sphere
 
 template <typename Real> World<Real> flatten(const Scene& scene) {
     World<Real> world;
+    std::uint32_t object = 0;
     for (const Instance& instance : scene.instances) {
-        const Placement placement(scene, instance);
+        const Placement placement(scene, instance, object++);
         for (const auto& triangle : placement.mesh.triangles) addTriangle(world, placement, triangle);
     }
-    for (const Sphere& sphere : scene.spheres) addSphere(world, sphere);
+    for (const Sphere& sphere : scene.spheres) addSphere(world, sphere, object++);
     return world;
 }
 

@@ -16,12 +16,14 @@ template <typename Real> struct WorldTriangle {
     Vec3<Real> ng{0};                    ///< unit, on the front side; zero where the triangle has no area: never hit
     Real area = 0;
     std::uint32_t material = 0;
+    std::uint32_t object = 0; ///< the instance it belongs to
 };
 
 template <typename Real> struct WorldSphere {
     Vec3<Real> center;
     Real radius = 1;
     std::uint32_t material = 0;
+    std::uint32_t object = 0; ///< counted after all instances
 };
 
 /// A primitive id is an index into `triangles`, or `triangles.size()` plus an index into `spheres`.
@@ -36,6 +38,9 @@ template <typename Real> struct World {
     }
     [[nodiscard]] std::uint32_t materialOf(std::uint32_t primitive) const {
         return isTriangle(primitive) ? triangles[primitive].material : sphere(primitive).material;
+    }
+    [[nodiscard]] std::uint32_t objectOf(std::uint32_t primitive) const {
+        return isTriangle(primitive) ? triangles[primitive].object : sphere(primitive).object;
     }
     [[nodiscard]] std::uint32_t primitiveCount() const { return static_cast<std::uint32_t>(boxes.size()); }
 };

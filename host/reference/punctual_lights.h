@@ -1,0 +1,39 @@
+// Lights without extent: the one direction to them and what arrives from there.
+#pragma once
+
+#include "reference/light_sample.h"
+#include "scene/scene.h"
+
+#include <optional>
+
+namespace isolux {
+
+/// The light as seen from `origin`; pdf 1. None for one at that very point, or a spot that leaves it dark.
+template <typename Real>
+[[nodiscard]] std::optional<LightSample<Real>> samplePunctualLight(const PunctualLight& light,
+                                                                   const Vec3<Real>& origin) {
+    LightSample<Real> sample;
+    sample.pdf = 1;
+    sample.measure = Measure::discrete;
+    const Vec3<Real> axis = glm::normalize(Vec3<Real>(light.direction));
+    const Vec3<Real> intensity(light.intensity);
+    if (light.kind == PunctualKind::directional) {
+        sample.wi = -axis;
+        sample.emission = intensity;
+        sample.shadowRay = {origin, sample.wi};
+        return sample;
+    }
+    const Vec3<Real> way = Vec3<Real>(light.position) - origin;
+    const Real distance = glm::length(way);
+    if (!(distance > 0)) return std::nullopt;
+    sample.wi = way / distance;
+    sample.shadowRay = {origin, sample.wi, distance};
+    const bool spot = light.kind == PunctualKind::spot;
+    const Real attenuation = spot ? spotAttenuation(light, -glm::dot(axis, sample.wi)) : Real(1);
+    // Not a number where `Real` cannot tell the inner cone from the outer one.
+    if (!(attenuation > 0)) return std::nullopt;
+    sample.emission = attenuation * intensity / (distance * distance);
+    return sample;
+}
+
+} // namespace isolux
