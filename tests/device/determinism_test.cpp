@@ -123,7 +123,9 @@ TEST_F(Determinism, ATimeLimitStopsAllPixelsAtTheSameSample) {
         EXPECT_GE(film.minSampleCount(), 1u);
         EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
         EXPECT_LT(film.maxSampleCount(), settings.sampleCount);
-        if (seconds == 0.0) EXPECT_EQ(film.maxSampleCount(), 1u);
+        if (seconds == 0.0) {
+            EXPECT_EQ(film.maxSampleCount(), 1u);
+        }
         // Batches differ in size, so that sums differ in rounding alone: 2^-24 of a sum of some tens of samples.
         settings.sampleCount = static_cast<std::uint32_t>(film.maxSampleCount());
         const Film whole = render(scene, settings);
