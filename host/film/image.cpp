@@ -1,6 +1,7 @@
 #include "film/image.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -23,23 +24,13 @@ struct UnsignedReader {
         return value < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(value));
     }
     std::optional<std::uint64_t> operator()(double) const { return std::nullopt; }
+    std::optional<std::uint64_t> operator()(const MetadataMatrix&) const { return std::nullopt; }
 };
 
-std::array<float, 9> channelValues(const PixelStatistics& pixel) {
-    const Vec3f mean(pixel.mean);
-    const Vec3f variance(pixel.variance());
-    const double count = static_cast<double>(pixel.sampleCount);
-    const double coverage = pixel.sampleCount == 0 ? 0.0 : static_cast<double>(pixel.hitCount) / count;
-    return {mean.x,
-            mean.y,
-            mean.z,
-            static_cast<float>(coverage),
-            variance.x,
-            variance.y,
-            variance.z,
-            static_cast<float>(pixel.luminanceVariance()),
-            static_cast<float>(count)};
-}
+struct TextWriter {
+    std::string operator()(const MetadataMatrix& matrix) const { return fmt::format("{}", fmt::join(matrix, " ")); }
+    template <typename Value> std::string operator()(const Value& value) const { return fmt::format("{}", value); }
+};
 
 } // namespace
 
@@ -62,6 +53,13 @@ MetadataValue unsignedMetadata(std::uint64_t value) {
     return fmt::format("{}", value);
 }
 
+MetadataValue matrixMetadata(const Mat4d& targetFromSource) {
+    MetadataMatrix matrix{}; // a column of column vectors' matrix is a row of row vectors'
+    for (int i = 0; i < 16; ++i)
+        matrix[static_cast<std::size_t>(i)] = static_cast<float>(targetFromSource[i / 4][i % 4]);
+    return matrix;
+}
+
 std::optional<std::uint64_t> metadataUnsigned(const Metadata& metadata, const std::string& name) {
     const auto found = metadata.find(name);
     if (found == metadata.end()) return std::nullopt;
@@ -71,22 +69,7 @@ std::optional<std::uint64_t> metadataUnsigned(const Metadata& metadata, const st
 std::optional<std::string> metadataText(const Metadata& metadata, const std::string& name) {
     const auto found = metadata.find(name);
     if (found == metadata.end()) return std::nullopt;
-    return std::visit([](const auto& value) { return fmt::format("{}", value); }, found->second);
-}
-
-Image imageFromFilm(const Film& film, Metadata metadata) {
-    Image image;
-    image.width = film.width;
-    image.height = film.height;
-    image.channels = {"R", "G", "B", "A", "variance.R", "variance.G", "variance.B", "variance.Y", "samples.Y"};
-    image.values.reserve(film.pixels.size() * image.channels.size());
-    for (const PixelStatistics& pixel : film.pixels) {
-        const std::array<float, 9> values = channelValues(pixel);
-        image.values.insert(image.values.end(), values.begin(), values.end());
-    }
-    image.metadata = std::move(metadata);
-    image.metadata["isolux/sampleCount"] = unsignedMetadata(film.maxSampleCount());
-    return image;
+    return std::visit(TextWriter{}, found->second);
 }
 
 } // namespace isolux

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "film/tonemap.h"
 
 #include <array>
 #include <cstddef>
@@ -16,7 +17,9 @@
 
 namespace isolux {
 
-using MetadataValue = std::variant<std::string, std::int64_t, double>;
+/// A 4 x 4 matrix as OpenEXR has it: row by row, for row vectors (p' = p M), so that the last row translates.
+using MetadataMatrix = std::array<float, 16>;
+using MetadataValue = std::variant<std::string, std::int64_t, double, MetadataMatrix>;
 using Metadata = std::map<std::string, MetadataValue>;
 
 /// Channels one after the other in memory order pixel by pixel (interleaved), rows from the top.
@@ -40,19 +43,22 @@ struct Image {
 /// A count or seed as metadata: an integer, or its decimal digits where 64 bits with a sign cannot hold it.
 [[nodiscard]] MetadataValue unsignedMetadata(std::uint64_t value);
 
+/// A transform of column vectors, such as worldToCamera = cameraFromWorld, as metadata.
+[[nodiscard]] MetadataValue matrixMetadata(const Mat4d& targetFromSource);
+
 /// The value under `name` as an unsigned integer, given as a number or as decimal digits; nothing if there is none.
 [[nodiscard]] std::optional<std::uint64_t> metadataUnsigned(const Metadata& metadata, const std::string& name);
 
 /// The value under `name` as text, numbers in the shortest form that reads back exactly; nothing if there is none.
 [[nodiscard]] std::optional<std::string> metadataText(const Metadata& metadata, const std::string& name);
 
-/// R G B (mean), A (the share of samples that met a surface), variance.R/G/B and variance.Y (of one sample, unbiased; Y
-/// is luminance), samples.Y. Metadata isolux/sampleCount is set to the most samples any pixel holds.
+/// The layers variance and samples of film/layers.h, which has images with others, beside R G B A.
 [[nodiscard]] Image imageFromFilm(const Film& film, Metadata metadata);
 
-/// Writes OpenEXR (float32, all channels), PNG (8 bit, sRGB transfer function) or HDR by the extension of `path`: to a
-/// temporary name beside it, flushed, then renamed. Throws Error; a file already at `path` survives every failure.
-void writeImage(const std::filesystem::path& path, const Image& image);
+/// Writes OpenEXR (float32, all channels), PNG (8 bit, `display` applied, sRGB transfer function) or HDR by the
+/// extension of `path`: to a temporary name beside it, flushed, then renamed. Throws Error; a file already at `path`
+/// survives every failure. Warns of values that HDR cannot hold.
+void writeImage(const std::filesystem::path& path, const Image& image, const DisplayTransform& display = {});
 
 /// Throws Error (bad input) early if `path` has no supported extension, names a folder, or its folder does not exist or
 /// cannot be written to.

@@ -2,6 +2,7 @@
 #include "film/image.h"
 
 #include "core/error.h"
+#include "core/log.h"
 #include "core/platform.h"
 #include "film/srgb.h"
 
@@ -80,6 +81,9 @@ void setAttribute(OIIO::ImageSpec& spec, const std::string& name, const std::str
 void setAttribute(OIIO::ImageSpec& spec, const std::string& name, double value) {
     spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), &value);
 }
+void setAttribute(OIIO::ImageSpec& spec, const std::string& name, const MetadataMatrix& value) {
+    spec.attribute(name, OIIO::TypeMatrix44, value.data());
+}
 
 FileContent exrContent(const Image& image) {
     FileContent content{makeSpec(image, image.channels, OIIO::TypeDesc::FLOAT), image.values, {}};
@@ -97,6 +101,10 @@ std::array<std::size_t, 3> requireRgb(const Image& image, const fs::path& path) 
     const auto rgb = image.rgbChannels();
     if (!rgb) throwFailure(path.string(), "the image has no channels R, G and B to write");
     return *rgb;
+}
+
+Vec3f rgbValue(const Image& image, std::size_t pixel, const std::array<std::size_t, 3>& rgb) {
+    return {image.value(pixel, rgb[0]), image.value(pixel, rgb[1]), image.value(pixel, rgb[2])};
 }
 
 /// The alpha channel if a viewer should see it: not where it is 1 all over, and not where light comes from behind
@@ -122,8 +130,16 @@ std::uint8_t quantise(double value) {
 }
 std::uint8_t encodeSrgb(double linear) { return quantise(linear > 0.0 ? srgbFromLinear(std::min(linear, 1.0)) : 0.0); }
 
-/// PNG stores colour not multiplied by alpha. The division is done on linear values, before anything is rounded.
-FileContent pngContent(const Image& image, const fs::path& path) {
+/// Metadata as text, without what describes channels that a PNG does not have.
+void setTexts(OIIO::ImageSpec& spec, const Metadata& metadata) {
+    for (const auto& entry : metadata) {
+        if (!entry.first.starts_with("cryptomatte/")) spec.attribute(entry.first, *metadataText(metadata, entry.first));
+    }
+}
+
+/// PNG stores colour not multiplied by alpha: it is divided first, so that the tone map sees the colour of what is
+/// there and not of what shines through, and rounded last.
+FileContent pngContent(const Image& image, const fs::path& path, const DisplayTransform& display) {
     const std::array<std::size_t, 3> rgb = requireRgb(image, path);
     const std::optional<std::size_t> alpha = visibleAlpha(image, rgb);
     std::vector<std::string> channels{"R", "G", "B"};
@@ -132,12 +148,11 @@ FileContent pngContent(const Image& image, const fs::path& path) {
     for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
         const double coverage = alpha ? double{image.value(pixel, *alpha)} : 1.0;
         const double scale = coverage > 0.0 ? 1.0 / coverage : 1.0;
-        for (std::size_t c : rgb) content.bytes.push_back(encodeSrgb(scale * double{image.value(pixel, c)}));
+        const Vec3d shown = applyDisplay(display, scale * Vec3d(rgbValue(image, pixel, rgb)));
+        for (int c = 0; c < 3; ++c) content.bytes.push_back(encodeSrgb(shown[c]));
         if (alpha) content.bytes.push_back(quantise(coverage));
     }
-    for (const auto& entry : image.metadata) {
-        content.spec.attribute(entry.first, *metadataText(image.metadata, entry.first));
-    }
+    setTexts(content.spec, image.metadata);
     content.spec.attribute("oiio:ColorSpace", "sRGB");
     content.spec.attribute("oiio:UnassociatedAlpha", 1);
     return content;
@@ -154,12 +169,18 @@ float halfRgbeStep(float largest) {
     return largest + half < std::ldexp(1.0f, exponent) ? half : 2.0f * half;
 }
 
+constexpr float kLargestRgbe = 1.6e38f; // below 2^127
+
+bool fitsRgbe(const Vec3f& radiance) {
+    return glm::all(glm::greaterThanEqual(radiance, Vec3f(0.0f))) &&
+           glm::all(glm::lessThanEqual(radiance, Vec3f(kLargestRgbe)));
+}
+
 /// What RGBE can hold, with half a step added: OpenImageIO's encoder truncates, which would darken every image by 0.2
 /// %.
 Vec3f prepareForRgbe(const Vec3f& radiance) {
-    constexpr float kLargest = 1.6e38f; // below 2^127
     Vec3f rgb(0.0f);
-    for (int c = 0; c < 3; ++c) rgb[c] = radiance[c] > 0.0f ? std::min(radiance[c], kLargest) : 0.0f;
+    for (int c = 0; c < 3; ++c) rgb[c] = radiance[c] > 0.0f ? std::min(radiance[c], kLargestRgbe) : 0.0f;
     const float largest = maxComponent(rgb);
     return largest > 0.0f ? rgb + Vec3f(halfRgbeStep(largest)) : rgb;
 }
@@ -167,20 +188,25 @@ Vec3f prepareForRgbe(const Vec3f& radiance) {
 FileContent hdrContent(const Image& image, const fs::path& path) {
     const std::array<std::size_t, 3> rgb = requireRgb(image, path);
     FileContent content{makeSpec(image, {"R", "G", "B"}, OIIO::TypeDesc::FLOAT), {}, {}};
+    std::size_t clamped = 0;
     for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
-        const Vec3f value =
-            prepareForRgbe({image.value(pixel, rgb[0]), image.value(pixel, rgb[1]), image.value(pixel, rgb[2])});
+        const Vec3f radiance = rgbValue(image, pixel, rgb);
+        clamped += fitsRgbe(radiance) ? 0 : 1;
+        const Vec3f value = prepareForRgbe(radiance);
         content.floats.insert(content.floats.end(), {value.x, value.y, value.z});
     }
+    if (clamped != 0)
+        spdlog::warn("{}: {} pixels are negative, NaN or above {:.3g}, which this format cannot hold: clamped",
+                     path.string(), clamped, kLargestRgbe);
     return content;
 }
 
 // --- Writing ---
 
-FileContent makeContent(Format format, const Image& image, const fs::path& path) {
+FileContent makeContent(Format format, const Image& image, const fs::path& path, const DisplayTransform& display) {
     switch (format) {
     case Format::openExr: return exrContent(image);
-    case Format::png: return pngContent(image, path);
+    case Format::png: return pngContent(image, path, display);
     case Format::hdr: return hdrContent(image, path);
     }
     return {};
@@ -235,10 +261,10 @@ void writeBytes(const fs::path& file, std::span<const unsigned char> bytes, cons
 
 } // namespace
 
-void writeImage(const fs::path& path, const Image& image) {
+void writeImage(const fs::path& path, const Image& image, const DisplayTransform& display) {
     assert(image.values.size() == image.pixelCount() * image.channels.size());
     const Format format = requireFormat(path);
-    const std::vector<unsigned char> bytes = encode(format, makeContent(format, image, path), path);
+    const std::vector<unsigned char> bytes = encode(format, makeContent(format, image, path, display), path);
     const TemporaryFile temporary(path);
     writeBytes(temporary.path(), bytes, path);
     replaceFile(temporary.path(), path);

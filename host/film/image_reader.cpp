@@ -6,6 +6,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace isolux {
@@ -14,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The limits of what is read: a header that asks for more is refused before memory is taken.
-constexpr int kMaxChannels = 256;
+constexpr int kMaxChannels = 4096;
 constexpr int kMaxImageMegabytes = 8192;
 
 void requireRegularFile(const fs::path& path) {
@@ -31,7 +32,7 @@ void requireReasonable(const OIIO::ImageSpec& spec, const fs::path& path) {
     const double megabytes = 4e-6 * spec.width * spec.height * spec.nchannels;
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1)
         throwBadInput(path.string(), "not a two-dimensional image");
-    if (spec.nchannels > kMaxChannels) throwBadInput(path.string(), "more channels than the limit of 256");
+    if (spec.nchannels > kMaxChannels) throwBadInput(path.string(), "more channels than the limit of 4096");
     if (megabytes > kMaxImageMegabytes) throwBadInput(path.string(), "larger than the limit of 8 GB of pixels");
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height) {
@@ -45,20 +46,37 @@ bool describesFile(const std::string& name) {
            name == "PixelAspectRatio";
 }
 
+/// OpenImageIO has names of its own for these attributes of EXR files.
+std::string exrName(const std::string& name) {
+    if (name == "worldtocamera") return "worldToCamera";
+    if (name == "worldtoNDC") return "worldToNDC";
+    return name == "worldtoscreen" ? "worldToScreen" : name;
+}
+
+MetadataMatrix readMatrix(const OIIO::ParamValue& attribute) {
+    MetadataMatrix matrix;
+    const float* const values = static_cast<const float*>(attribute.data());
+    std::copy(values, values + matrix.size(), matrix.begin());
+    return matrix;
+}
+
+/// The value of an attribute; nothing if it is of a type that metadata does not have.
+std::optional<MetadataValue> readValue(const OIIO::ParamValue& attribute) {
+    const OIIO::TypeDesc type = attribute.type();
+    if (type == OIIO::TypeMatrix44) return readMatrix(attribute);
+    if (type.arraylen != 0 || type.aggregate != OIIO::TypeDesc::SCALAR) return std::nullopt;
+    if (type.basetype == OIIO::TypeDesc::STRING) return attribute.get_string();
+    if (type.basetype == OIIO::TypeDesc::DOUBLE) return *static_cast<const double*>(attribute.data());
+    if (type.is_floating_point()) return double{attribute.get_float()};
+    return std::int64_t{attribute.get_int()};
+}
+
 Metadata readMetadata(const OIIO::ImageSpec& spec) {
     Metadata metadata;
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
         const std::string name = attribute.name().string();
-        const OIIO::TypeDesc type = attribute.type();
-        if (type.arraylen != 0 || type.aggregate != OIIO::TypeDesc::SCALAR) continue;
         if (describesFile(name)) continue;
-        if (type.basetype == OIIO::TypeDesc::STRING)
-            metadata[name] = attribute.get_string();
-        else if (type.is_floating_point())
-            metadata[name] = type.basetype == OIIO::TypeDesc::DOUBLE ? *static_cast<const double*>(attribute.data())
-                                                                     : double{attribute.get_float()};
-        else
-            metadata[name] = std::int64_t{attribute.get_int()};
+        if (const auto value = readValue(attribute)) metadata[exrName(name)] = *value;
     }
     return metadata;
 }
