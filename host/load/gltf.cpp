@@ -35,9 +35,15 @@ Material toMaterial(const tinygltf::Material& source, std::size_t index) {
     return material;
 }
 
-/// The roots of the default scene; else of the first one; else all nodes without a parent.
+/// The scene to render, if the file lists scenes: the default one, else the first.
+const tinygltf::Scene* chosenScene(const tinygltf::Model& model) {
+    if (model.scenes.empty()) return nullptr;
+    return &model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
+}
+
+/// The roots of the chosen scene; without scenes all nodes without a parent.
 std::vector<int> rootNodes(const tinygltf::Model& model) {
-    if (!model.scenes.empty()) return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
+    if (const tinygltf::Scene* scene = chosenScene(model)) return scene->nodes;
     std::vector<char> isChild(model.nodes.size(), 0);
     for (const tinygltf::Node& node : model.nodes)
         for (const int child : node.children) isChild[static_cast<std::size_t>(child)] = 1;
@@ -48,9 +54,20 @@ std::vector<int> rootNodes(const tinygltf::Model& model) {
 }
 
 std::string sceneName(const tinygltf::Model& model, const fs::path& file) {
-    const std::size_t index = static_cast<std::size_t>(std::max(model.defaultScene, 0));
-    const bool hasName = index < model.scenes.size() && !model.scenes[index].name.empty();
-    return hasName ? model.scenes[index].name : file.stem().string();
+    const tinygltf::Scene* scene = chosenScene(model);
+    return scene != nullptr && !scene->name.empty() ? scene->name : file.stem().string();
+}
+
+/// The extra "cgl_hemisphere_light" of the chosen scene, a sky above y = 0.
+Environment toEnvironment(const tinygltf::Model& model) {
+    const tinygltf::Scene* scene = chosenScene(model);
+    if (scene == nullptr || !scene->extras.Has("cgl_hemisphere_light")) return {};
+    const tinygltf::Value& radiance = scene->extras.Get("cgl_hemisphere_light").Get("radiance");
+    Environment environment;
+    environment.extent = EnvironmentExtent::upperHalf;
+    for (int channel = 0; channel < 3; ++channel)
+        environment.radiance[channel] = radiance.Get(channel).GetNumberAsDouble();
+    return environment;
 }
 
 void checkSize(const Scene& scene, const LoadContext& context) {
@@ -61,7 +78,9 @@ void checkSize(const Scene& scene, const LoadContext& context) {
         context.fail(
             "", fmt::format("its instances amount to {} primitives and {} vertices; at most {} and {} are supported",
                             primitives, vertices, kMostPrimitives, kMostVertices));
-    const Box3d bounds = worldBounds(scene);
+    Box3d bounds = worldBounds(scene);
+    for (const Camera& camera : scene.cameras) bounds.extend(camera.position);
+    for (const PunctualLight& light : scene.punctualLights) bounds.extend(light.position);
     const double farthest =
         bounds.empty() ? 0.0 : maxComponent(glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));
     if (!(farthest <= kFarthest))
@@ -74,9 +93,10 @@ Scene buildScene(const Asset& asset, const fs::path& file, LoadContext& context)
     scene.name = sceneName(asset.model, file);
     for (std::size_t i = 0; i < asset.model.materials.size(); ++i)
         scene.materials.push_back(toMaterial(asset.model.materials[i], i));
+    scene.environment = toEnvironment(asset.model);
     walkNodes(asset, rootNodes(asset.model), context, scene);
     checkSize(scene, context);
-    if (primitiveCount(scene) == 0) context.warn("", "the scene has nothing to render");
+    if (primitiveCount(scene) == 0 && !scene.environment.emits()) context.warn("", "the scene has nothing to render");
     if (scene.cameras.empty()) scene.cameras.push_back(frameScene(scene));
     return scene;
 }

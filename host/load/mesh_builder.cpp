@@ -1,6 +1,7 @@
 #include "load/mesh_builder.h"
 
 #include "load/context.h"
+#include "load/topology.h"
 
 #include <fmt/format.h>
 
@@ -70,26 +71,15 @@ void MeshBuilder::build(std::size_t gltfMesh) {
     }
 }
 
-/// Whether an accessor can be read as it is: stored, complete, and in single precision where it is a vector.
+/// Whether a primitive's accessor holds anything: one without data is all zeros, which is no surface and no direction.
 bool MeshBuilder::isUsable(int accessor, const Source& source, std::string_view consequence) {
-    const tinygltf::Accessor& entry = asset_.model.accessors[static_cast<std::size_t>(accessor)];
-    if (entry.sparse.isSparse) {
-        context_.warn(source.pointer, fmt::format("sparse accessors are not supported; {}", consequence));
-        return false;
-    }
-    if (entry.bufferView < 0) {
-        context_.warn(source.pointer, fmt::format("it uses an accessor without a bufferView; {}", consequence));
-        return false;
-    }
-    if (entry.type == TINYGLTF_TYPE_VEC3 && entry.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
-        context_.warn(source.pointer, fmt::format("quantised vertices are not supported; {}", consequence));
-        return false;
-    }
-    return true;
+    if (hasData(accessorAt(accessor))) return true;
+    context_.warn(source.pointer, fmt::format("it uses an accessor without data, all zeros; {}", consequence));
+    return false;
 }
 
 bool MeshBuilder::isSupported(const Source& source) {
-    if (source.primitive.mode != TINYGLTF_MODE_TRIANGLES) return false; // warned of at verification
+    if (!isTriangleMode(source.primitive.mode)) return false; // warned of at verification
     const int position = attributeOf(source.primitive, "POSITION");
     if (position < 0) {
         context_.warn(source.pointer, "it has no POSITION; left out");
@@ -100,68 +90,119 @@ bool MeshBuilder::isSupported(const Source& source) {
 }
 
 Mesh MeshBuilder::buildMesh(const Source& source) {
-    const std::size_t position = static_cast<std::size_t>(attributeOf(source.primitive, "POSITION"));
-    const std::size_t vertexCount = asset_.model.accessors[position].count;
+    const std::size_t vertexCount = accessorAt(attributeOf(source.primitive, "POSITION")).count;
     if (vertexCount > 0xFFFFFFFFu)
         context_.fail(source.pointer, fmt::format("{} vertices are more than 2^32 - 1", vertexCount));
+    charge(source);
     std::vector<std::uint32_t> indices = readIndices(source, vertexCount);
     const std::vector<std::uint32_t> vertices = verticesUsed(indices, vertexCount);
     renumber(indices, vertices);
     Mesh mesh;
     mesh.material = materialFor(source.primitive.material);
     fillVertices(mesh, source, vertices);
-    mesh.triangles.reserve(indices.size() / 3);
-    for (std::size_t i = 0; i < indices.size(); i += 3)
-        mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    mesh.triangles = assembleTriangles(source.primitive.mode, indices);
     return mesh;
 }
 
+/// The accessor that says how many indices a primitive has: that of its indices, or of its vertices in order.
+const tinygltf::Accessor& MeshBuilder::sequenceOf(const Source& source) const {
+    const int indices = source.primitive.indices;
+    return accessorAt(indices >= 0 ? indices : attributeOf(source.primitive, "POSITION"));
+}
+
+/// The indices that make triangles, in order; without an accessor of indices the vertices follow each other.
 std::vector<std::uint32_t> MeshBuilder::readIndices(const Source& source, std::size_t vertexCount) {
-    std::optional<AccessorView> view;
-    if (source.primitive.indices >= 0) view.emplace(asset_, static_cast<std::size_t>(source.primitive.indices));
-    const std::size_t count = view ? view->count() : vertexCount;
-    if (count % 3 != 0)
+    const int mode = source.primitive.mode;
+    const std::size_t count = sequenceOf(source).count;
+    std::vector<std::uint32_t> indices(usedIndices(mode, count));
+    if (indices.empty())
+        context_.warn(source.pointer, "fewer than three indices make no triangle; left out");
+    else if (indices.size() < count)
         context_.warn(source.pointer, "its indices are no multiple of three; the last ones are ignored");
-    charge(count);
-    std::vector<std::uint32_t> indices(count - count % 3);
-    if (!view) std::iota(indices.begin(), indices.end(), 0u);
-    for (std::size_t i = 0; view && i < indices.size(); ++i) {
-        indices[i] = view->readIndex(i);
-        if (indices[i] >= vertexCount)
-            context_.fail(
-                fmt::format("/accessors/{}", source.primitive.indices),
-                fmt::format("element {} is {}, but the primitive has only {} vertices", i, indices[i], vertexCount));
+    if (source.primitive.indices < 0) {
+        std::iota(indices.begin(), indices.end(), 0u);
+        return indices;
+    }
+    const AccessorView view(asset_, static_cast<std::size_t>(source.primitive.indices), context_);
+    const auto fail = [&](std::size_t i, std::string_view reason) {
+        context_.fail(fmt::format("/accessors/{}", source.primitive.indices),
+                      fmt::format("element {} is {}, {}", i, indices[i], reason));
+    };
+    const std::uint32_t restart = view.restartIndex();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        indices[i] = view.readIndex(i);
+        if (indices[i] == restart) fail(i, "which restarts primitives elsewhere and is no index in glTF");
+        if (indices[i] >= vertexCount) fail(i, fmt::format("but the primitive has only {} vertices", vertexCount));
     }
     return indices;
 }
 
 void MeshBuilder::fillVertices(Mesh& mesh, const Source& source, std::span<const std::uint32_t> vertices) {
-    const auto fill = [&](std::vector<Vec3f>& target, int accessor) {
-        const AccessorView view(asset_, static_cast<std::size_t>(accessor));
-        target.reserve(vertices.size());
-        for (const std::uint32_t vertex : vertices) {
-            const Vec3f value = target.emplace_back(view.readVec3(vertex));
-            if (!isFinite(value))
-                context_.fail(fmt::format("/accessors/{}", accessor),
-                              fmt::format("element {} is not finite ({}, {}, {})", vertex, value.x, value.y, value.z));
-        }
-    };
-    fill(mesh.positions, attributeOf(source.primitive, "POSITION"));
+    fill(mesh.positions, attributeOf(source.primitive, "POSITION"), vertices);
+    warnIfUndeclared(source);
     const int normal = attributeOf(source.primitive, "NORMAL");
-    if (normal >= 0 && isUsable(normal, source, "shaded flat")) fill(mesh.normals, normal);
+    if (normal >= 0 && isUsable(normal, source, "shaded flat")) fill(mesh.normals, normal, vertices);
 }
 
-/// Many primitives may refer to the same data, so that a small file could ask for any amount of memory.
-void MeshBuilder::charge(std::size_t indices) {
+void MeshBuilder::fill(std::vector<Vec3f>& target, int accessor, std::span<const std::uint32_t> vertices) const {
+    const AccessorView view(asset_, static_cast<std::size_t>(accessor), context_);
+    target.reserve(vertices.size());
+    for (const std::uint32_t vertex : vertices) {
+        const Vec3f value = target.emplace_back(view.readVec3(vertex));
+        if (!isFinite(value))
+            context_.fail(fmt::format("/accessors/{}", accessor),
+                          fmt::format("element {} is not finite ({}, {}, {})", vertex, value.x, value.y, value.z));
+    }
+}
+
+/// Integer vertices are an extension, and a file that has them must require it; they mean the same without.
+void MeshBuilder::warnIfUndeclared(const Source& source) {
+    const auto& required = asset_.model.extensionsRequired;
+    if (std::find(required.begin(), required.end(), "KHR_mesh_quantization") != required.end()) return;
+    for (const char* name : {"POSITION", "NORMAL"}) {
+        const int accessor = attributeOf(source.primitive, name);
+        if (accessor < 0 || accessorAt(accessor).componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) continue;
+        context_.warn(source.pointer, "integer vertices without KHR_mesh_quantization in extensionsRequired; read as "
+                                      "that extension has them");
+        return;
+    }
+}
+
+/// Many primitives may refer to the same data, and an accessor without a bufferView to none at all, so that a small
+/// file could ask for any amount of memory and time. What a primitive takes is known before any of it is allocated.
+void MeshBuilder::charge(const Source& source) {
     // Meshes that differ in material alone share data too, so a large factor is no proof of malice.
     constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 30;
+    constexpr std::uint64_t kClaimsAllowed = std::uint64_t{1} << 20;
     constexpr std::uint64_t kLargestFactor = 64;
-    bytesBuilt_ += std::uint64_t{indices} * (sizeof(std::uint32_t) + 2 * sizeof(Vec3f));
-    if (bytesBuilt_ > kAlwaysAllowed && bytesBuilt_ / kLargestFactor > asset_.buffers.totalBytes)
+    const auto exceeds = [&](std::uint64_t bytes, std::uint64_t allowed) {
+        return bytes > allowed && bytes / kLargestFactor > asset_.buffers.totalBytes;
+    };
+    const tinygltf::Accessor& sequence = sequenceOf(source);
+    const std::uint64_t bytes = bytesToBuild(source);
+    bytesBuilt_ += bytes;
+    if (sequence.bufferView < 0) bytesClaimed_ += bytes;
+    if (exceeds(bytesBuilt_, kAlwaysAllowed))
         context_.fail("/meshes",
                       fmt::format("the meshes expand to over {} times the size of the buffers; refer to the same "
                                   "mesh from several nodes instead of repeating its primitives",
                                   kLargestFactor));
+    if (exceeds(bytesClaimed_, kClaimsAllowed))
+        context_.fail(source.pointer, fmt::format("its {} elements without a bufferView come to over {} times the "
+                                                  "size of the buffers; store them in one",
+                                                  sequence.count, kLargestFactor));
+}
+
+/// Indices, vertices, triangles, and the indices of sparse accessors that are checked on the way.
+std::uint64_t MeshBuilder::bytesToBuild(const Source& source) const {
+    const std::uint64_t indices = sequenceOf(source).count;
+    std::uint64_t bytes = indices * (sizeof(std::uint32_t) + 2 * sizeof(Vec3f));
+    bytes += mostTriangles(source.primitive.mode, indices) * sizeof(Mesh::triangles[0]);
+    for (const int accessor :
+         {source.primitive.indices, attributeOf(source.primitive, "POSITION"), attributeOf(source.primitive, "NORMAL")})
+        if (accessor >= 0 && accessorAt(accessor).sparse.isSparse)
+            bytes += static_cast<std::uint64_t>(accessorAt(accessor).sparse.count) * sizeof(std::uint32_t);
+    return bytes;
 }
 
 } // namespace isolux

@@ -30,7 +30,14 @@ private:
     [[nodiscard]] Mesh buildMesh(const Source& source);
     [[nodiscard]] std::vector<std::uint32_t> readIndices(const Source& source, std::size_t vertexCount);
     void fillVertices(Mesh& mesh, const Source& source, std::span<const std::uint32_t> vertices);
-    void charge(std::size_t indices);
+    void fill(std::vector<Vec3f>& target, int accessor, std::span<const std::uint32_t> vertices) const;
+    void warnIfUndeclared(const Source& source);
+    void charge(const Source& source);
+    [[nodiscard]] std::uint64_t bytesToBuild(const Source& source) const;
+    [[nodiscard]] const tinygltf::Accessor& sequenceOf(const Source& source) const;
+    [[nodiscard]] const tinygltf::Accessor& accessorAt(int index) const {
+        return asset_.model.accessors[static_cast<std::size_t>(index)];
+    }
 
     const Asset& asset_;
     LoadContext& context_;
@@ -38,6 +45,7 @@ private:
     std::vector<std::optional<std::vector<std::uint32_t>>> built_;
     std::optional<std::uint32_t> defaultMaterial_;
     std::uint64_t bytesBuilt_ = 0;
+    std::uint64_t bytesClaimed_ = 0; ///< of these, what no bufferView stands behind
 };
 
 } // namespace isolux

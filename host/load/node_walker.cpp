@@ -9,6 +9,7 @@ namespace isolux {
 namespace {
 
 constexpr std::size_t kDeepestNode = 1024;
+constexpr const char* kLights = "KHR_lights_punctual";
 
 Vec3d toVec3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
@@ -48,6 +49,38 @@ std::optional<double> uniformScale(const Mat3d& m) {
         for (int row = 0; row < 3; ++row)
             if (!(std::abs(gram[column][row] - (row == column ? 1.0 : 0.0)) <= 2.0 * kTolerance)) return std::nullopt;
     return scale;
+}
+
+/// What of a camera does not depend on where it stands.
+Camera toCamera(const tinygltf::Camera& source) {
+    Camera camera;
+    camera.name = source.name;
+    if (source.type == "orthographic") {
+        camera.projection = Projection::orthographic;
+        camera.ymag = source.orthographic.ymag;
+        camera.aspectRatio = source.orthographic.xmag / source.orthographic.ymag;
+        return camera;
+    }
+    camera.yfov = source.perspective.yfov;
+    if (source.perspective.aspectRatio > 0.0) camera.aspectRatio = source.perspective.aspectRatio;
+    return camera;
+}
+
+/// What of a light does not depend on where it stands.
+PunctualLight toLight(const tinygltf::Light& source) {
+    // 16 times the rounding of a cosine in single precision: less could make the two equal on a device.
+    constexpr double kNarrowestEdge = 0x1p-20;
+    PunctualLight light;
+    light.name = source.name;
+    light.kind = source.type == "point"  ? PunctualKind::point
+                 : source.type == "spot" ? PunctualKind::spot
+                                         : PunctualKind::directional;
+    light.intensity = source.intensity * toVec3(source.color);
+    if (light.kind == PunctualKind::spot) {
+        light.cosInner = std::cos(source.spot.innerConeAngle);
+        light.cosOuter = std::min(std::cos(source.spot.outerConeAngle), light.cosInner - kNarrowestEdge);
+    }
+    return light;
 }
 
 class NodeWalker {
@@ -93,6 +126,7 @@ private:
             context_.fail(pointerTo(visit.node), fmt::format("is nested more than {} nodes deep", kDeepestNode));
         if (!isFiniteMatrix(world)) context_.fail(pointerTo(visit.node), "its transform to the world is not finite");
         if (source.camera >= 0) placeCamera(visit.node, world);
+        if (source.extensions.contains(kLights)) placeLight(visit.node, world);
         if (source.extras.Has("sphere"))
             placeSphere(visit.node, world);
         else if (source.mesh >= 0)
@@ -131,17 +165,28 @@ private:
     /// A camera's scale is ignored (glTF 2.0, 3.10.1): the viewing direction and the upright plane are kept.
     void placeCamera(int index, const Mat4d& world) {
         const tinygltf::Camera& source = asset_.model.cameras[static_cast<std::size_t>(node(index).camera)];
-        if (source.type != "perspective") return; // warned of at verification
         const Vec3d backward = direction(Vec3d(world[2]));
         const Vec3d right = direction(glm::cross(direction(Vec3d(world[1])), backward));
         if (right == Vec3d(0.0)) context_.fail(pointerTo(index), "its camera has no direction: a scale is zero");
-        Camera camera;
-        camera.name = source.name.empty() ? nameOf(index) : source.name;
+        Camera camera = toCamera(source);
+        if (camera.name.empty()) camera.name = node(index).name;
+        if (camera.name.empty()) camera.name = fmt::format("camera {}", scene_.cameras.size());
         camera.position = Vec3d(world[3]);
         camera.worldFromCamera = Mat3d(right, glm::cross(backward, right), backward);
-        camera.yfov = source.perspective.yfov;
-        if (source.perspective.aspectRatio > 0.0) camera.aspectRatio = source.perspective.aspectRatio;
         scene_.cameras.push_back(std::move(camera));
+    }
+
+    /// Scale does not change a light (KHR_lights_punctual): it takes the node's origin, and shines along its -z.
+    void placeLight(int index, const Mat4d& world) {
+        const tinygltf::Value& reference = node(index).extensions.at(kLights).Get("light");
+        PunctualLight light = toLight(asset_.model.lights[static_cast<std::size_t>(reference.GetNumberAsInt())]);
+        if (light.name.empty()) light.name = nameOf(index);
+        light.position = Vec3d(world[3]);
+        if (light.kind != PunctualKind::point) light.direction = -direction(Vec3d(world[2]));
+        if (light.direction == Vec3d(0.0))
+            context_.warn(pointerTo(index), "its light has no direction, for a scale is zero; left out");
+        else
+            scene_.punctualLights.push_back(std::move(light));
     }
 
     const Asset& asset_;

@@ -1,4 +1,4 @@
-// Walks the node trees of a scene: instances, exact spheres and cameras in the world.
+// Walks the node trees of a scene: instances, exact spheres, cameras and lights in the world.
 #pragma once
 
 #include "load/mesh_builder.h"

@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 2> kSupportedExtensions = {"KHR_materials_emissive_strength",
-                                                                  "KHR_materials_specular"};
+constexpr std::array<std::string_view, 4> kSupportedExtensions = {
+    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_specular", "KHR_mesh_quantization"};
 
 bool isSupported(std::string_view extension) {
     return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
@@ -51,33 +51,48 @@ void verifyAsset(const JsonReader& root) {
             fmt::format("a reader of glTF {} is needed; this one reads 2.0", printable(minVersion->string())));
 }
 
-void verifyExtensions(const JsonReader& root) {
+json verifyExtensions(const JsonReader& root) {
+    json required = json::array();
     for (std::size_t i = 0; i < root.sizeOf("extensionsRequired"); ++i) {
         const JsonReader entry = root.at("extensionsRequired").element(i);
         if (const std::string& name = entry.string(); !isSupported(name))
             entry.fail(fmt::format("the file requires {}, which is not supported; export without it", printable(name)));
+        required.push_back(entry.string());
     }
     for (std::size_t i = 0; i < root.sizeOf("extensionsUsed"); ++i) {
         const JsonReader entry = root.at("extensionsUsed").element(i);
         if (const std::string& name = entry.string(); !isSupported(name))
             entry.warn(fmt::format("{} is not supported; ignored", printable(name)));
     }
+    return required;
 }
 
 void copyName(const JsonReader& from, json& to) {
     if (const std::optional<JsonReader> name = from.find("name")) to["name"] = name->string();
 }
 
+std::optional<JsonReader> findExtension(const JsonReader& object, std::string_view name) {
+    const std::optional<JsonReader> extensions = object.find("extensions");
+    return extensions ? extensions->find(name) : std::nullopt;
+}
+
+// Extras are the file's own: they may be of any type.
+std::optional<JsonReader> findExtra(const JsonReader& object, std::string_view name) {
+    const std::optional<JsonReader> extras = object.find("extras");
+    return extras && extras->isObject() ? extras->find(name) : std::nullopt;
+}
+
 json verifyDocument(const JsonReader& root) {
     verifyAsset(root);
-    verifyExtensions(root);
     json document;
     document["asset"] = {{"version", "2.0"}};
+    document["extensionsRequired"] = verifyExtensions(root);
     document["bufferViews"] = verifyAll(root, "bufferViews", verifyBufferView);
     document["accessors"] = verifyAll(root, "accessors", verifyAccessor);
     document["materials"] = verifyAll(root, "materials", verifyMaterial);
     document["meshes"] = verifyAll(root, "meshes", verifyMesh);
     document["cameras"] = verifyAll(root, "cameras", verifyCamera);
+    document["extensions"]["KHR_lights_punctual"]["lights"] = verifyLights(root);
     document["nodes"] = verifyAll(root, "nodes", verifyNode);
     document["scenes"] = verifyAll(root, "scenes", verifyScene);
     if (const std::optional<JsonReader> scene = root.find("scene"))

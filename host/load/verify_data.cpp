@@ -73,9 +73,12 @@ JsonReader viewOf(const JsonReader& where, const JsonReader& root) {
     return root.at("bufferViews").element(where.at("bufferView").index(root.sizeOf("bufferViews"), "bufferViews"));
 }
 
-/// One half of a sparse accessor: its `indices` or `values`.
+/// One half of a sparse accessor: its `indices` or `values`, which lie close together (glTF 2.0, 5.3 and 5.4).
 json verifySparsePart(const JsonReader& part, const JsonReader& root, const Layout& layout) {
-    verifyRange(part, viewOf(part, root), layout);
+    const JsonReader view = viewOf(part, root);
+    if (integerOr(view, "byteStride", layout.elementBytes) != layout.elementBytes)
+        part.fail(fmt::format("{} has a byteStride, which data of a sparse accessor must not have", view.pointer()));
+    verifyRange(part, view, layout);
     return {{"bufferView", part.at("bufferView").integer()},
             {"byteOffset", part.find("byteOffset") ? part.at("byteOffset").integerBetween(0, kLargestInt) : 0}};
 }
@@ -84,6 +87,7 @@ json verifySparse(const JsonReader& sparse, const JsonReader& root, const Layout
     const std::uint64_t count = sparse.at("count").integerBetween(1, std::min(base.count, kLargestInt));
     const JsonReader indexType = sparse.at("indices").at("componentType");
     const std::uint64_t indexBytes = componentBytes(indexType);
+    if (!isIndexType(indexType.integer())) indexType.fail("must be 5121, 5123 or 5125, unsigned integers");
     json result{{"count", count}};
     result["indices"] = verifySparsePart(sparse.at("indices"), root, {count, indexBytes, indexBytes});
     result["indices"]["componentType"] = indexType.integer();
@@ -92,6 +96,10 @@ json verifySparse(const JsonReader& sparse, const JsonReader& root, const Layout
 }
 
 } // namespace
+
+bool isIndexType(std::uint64_t componentType) {
+    return componentType == 5121 || componentType == 5123 || componentType == 5125;
+}
 
 json verifyBufferView(const JsonReader& view, const JsonReader& root) {
     const std::size_t buffer = view.at("buffer").index(root.sizeOf("buffers"), "buffers");

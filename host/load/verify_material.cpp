@@ -3,14 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 namespace isolux {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kLargestRadiance = std::numeric_limits<float>::max(); // emission becomes single precision on devices
 
 double factorOr(const JsonReader& object, std::string_view key, double fallback) {
     const std::optional<JsonReader> member = object.find(key);
@@ -22,11 +18,6 @@ void verifyTexture(const JsonReader& owner, std::string_view key, const JsonRead
     if (!texture) return;
     (void)texture->at("index").index(root.sizeOf("textures"), "textures");
     texture->warn("textures are not supported; ignored");
-}
-
-std::optional<JsonReader> findExtension(const JsonReader& object, std::string_view name) {
-    const std::optional<JsonReader> extensions = object.find("extensions");
-    return extensions ? extensions->find(name) : std::nullopt;
 }
 
 double verifyEmissiveStrength(const JsonReader& material) {

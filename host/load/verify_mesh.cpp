@@ -11,8 +11,13 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kTriangles = 4;
-constexpr std::array<std::string_view, 7> kModes = {"POINTS",    "LINES",          "LINE_LOOP",   "LINE_STRIP",
-                                                    "TRIANGLES", "TRIANGLE_STRIP", "TRIANGLE_FAN"};
+constexpr std::uint64_t kByte = 5120;
+constexpr std::uint64_t kUnsignedByte = 5121;
+constexpr std::uint64_t kShort = 5122;
+constexpr std::uint64_t kUnsignedInt = 5125;
+constexpr std::uint64_t kFloat = 5126;
+/// The modes before triangles.
+constexpr std::array<std::string_view, kTriangles> kModes = {"POINTS", "LINES", "LINE_LOOP", "LINE_STRIP"};
 
 JsonReader accessorOf(const JsonReader& reference, const JsonReader& root) {
     return root.at("accessors").element(reference.index(root.sizeOf("accessors"), "accessors"));
@@ -40,22 +45,43 @@ void warnOfAttributes(const JsonReader& attributes) {
 
 json verifyIndices(const JsonReader& indices, const JsonReader& root) {
     const JsonReader accessor = accessorOf(indices, root);
-    const std::uint64_t type = accessor.at("componentType").integer();
-    if (accessor.at("type").string() != "SCALAR" || (type != 5121 && type != 5123 && type != 5125))
+    if (accessor.at("type").string() != "SCALAR" || !isIndexType(accessor.at("componentType").integer()))
         indices.fail("refers to an accessor that is not SCALAR of unsigned bytes, shorts or ints");
-    if (!accessor.find("bufferView"))
-        indices.fail("refers to an accessor without a bufferView, which is not supported; store the indices");
     return indices.integer();
 }
 
-/// POSITION and NORMAL in single precision; other component types need KHR_mesh_quantization.
+/// Single precision, or the integers that KHR_mesh_quantization adds: any of 8 and 16 bits for POSITION, normalised
+/// signed ones for NORMAL.
+void verifyVertexType(const JsonReader& attribute, std::string_view name, const JsonReader& accessor) {
+    const std::uint64_t type = accessor.at("componentType").integer();
+    const bool isNormalized = accessor.find("normalized") && accessor.at("normalized").boolean();
+    if (accessor.at("type").string() != "VEC3") attribute.fail("refers to an accessor that is not VEC3");
+    if (type == kFloat) return;
+    if (name == "POSITION" && type == kUnsignedInt) attribute.fail("refers to unsigned ints, which are no positions");
+    if (name == "NORMAL" && !(isNormalized && (type == kByte || type == kShort)))
+        attribute.fail("refers to integers other than normalized bytes or shorts, which are no normals");
+}
+
+/// Elements of vertices start at multiples of four bytes (glTF 2.0, 3.6.2.4); integers that do not can be read as well.
+void warnIfUnaligned(const JsonReader& attribute, const JsonReader& accessor, const JsonReader& root) {
+    const std::uint64_t component = accessor.at("componentType").integer();
+    if (component == kFloat || !accessor.find("bufferView")) return;
+    const JsonReader view = root.at("bufferViews").element(accessor.at("bufferView").integer());
+    const std::uint64_t tight = component == kByte || component == kUnsignedByte ? 3 : 6;
+    const std::uint64_t stride = view.find("byteStride") ? view.at("byteStride").integer() : tight;
+    const std::uint64_t offset = accessor.find("byteOffset") ? accessor.at("byteOffset").integer() : 0;
+    if (stride % 4 != 0 || offset % 4 != 0)
+        attribute.warn("vertices do not start at multiples of four bytes, as glTF asks; read as they lie");
+}
+
 json verifyAttributes(const JsonReader& attributes, const JsonReader& root) {
     json result = json::object();
     for (const std::string_view name : {"POSITION", "NORMAL"}) {
         const std::optional<JsonReader> attribute = attributes.find(name);
         if (!attribute) continue;
-        if (accessorOf(*attribute, root).at("type").string() != "VEC3")
-            attribute->fail("refers to an accessor that is not VEC3");
+        const JsonReader accessor = accessorOf(*attribute, root);
+        verifyVertexType(*attribute, name, accessor);
+        warnIfUnaligned(*attribute, accessor, root);
         result[std::string(name)] = attribute->integer();
     }
     return result;
@@ -75,7 +101,7 @@ json verifyPrimitive(const JsonReader& primitive, const JsonReader& root) {
     if (const std::optional<JsonReader> material = primitive.find("material"))
         result["material"] = material->index(root.sizeOf("materials"), "materials");
     const std::uint64_t mode = primitive.find("mode") ? primitive.at("mode").integerBetween(0, 6) : kTriangles;
-    if (mode != kTriangles) primitive.warn(fmt::format("mode {} is not supported; left out", kModes[mode]));
+    if (mode < kTriangles) primitive.warn(fmt::format("mode {} is not supported; left out", kModes[mode]));
     result["mode"] = mode;
     return result;
 }

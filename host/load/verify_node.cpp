@@ -1,19 +1,15 @@
-// Nodes, cameras and scenes: transforms, references, and that the nodes form trees.
+// Nodes and scenes: transforms, references, extras, and that the nodes form trees.
 #include "load/context.h"
 #include "load/verify_parts.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace isolux {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kHuge = std::numeric_limits<double>::max();
 
 json verifyMatrix(const JsonReader& matrix) {
     constexpr double kTolerance = 1e-6; // exporters round
@@ -49,14 +45,23 @@ void verifyTransform(const JsonReader& node, json& result) {
 
 /// extras {"sphere": {"radius": r, "material": m}}: an exact sphere at the node's origin.
 void verifySphere(const JsonReader& node, const JsonReader& root, json& result) {
-    const std::optional<JsonReader> extras = node.find("extras");
-    if (!extras || !extras->isObject() || !extras->find("sphere")) return;
-    const JsonReader sphere = extras->at("sphere");
-    const double radius = sphere.at("radius").number();
-    if (!(radius > 0.0)) sphere.at("radius").fail(fmt::format("is {} but must be positive", radius));
+    const std::optional<JsonReader> sphere = findExtra(node, "sphere");
+    if (!sphere) return;
+    const double radius = sphere->at("radius").number();
+    if (!(radius > 0.0)) sphere->at("radius").fail(fmt::format("is {} but must be positive", radius));
     result["extras"]["sphere"]["radius"] = radius;
-    if (const std::optional<JsonReader> material = sphere.find("material"))
+    if (const std::optional<JsonReader> material = sphere->find("material"))
         result["extras"]["sphere"]["material"] = material->index(root.sizeOf("materials"), "materials");
+}
+
+/// extras {"cgl_hemisphere_light": {"radiance": [r, g, b]}}: constant radiance from the upper half of the directions.
+void verifyHemisphereLight(const JsonReader& scene, json& result) {
+    const std::optional<JsonReader> light = findExtra(scene, "cgl_hemisphere_light");
+    if (!light) return;
+    json& extra = result["extras"]["cgl_hemisphere_light"];
+    extra["radiance"] = light->at("radiance").numbersBetween(3, 0.0, kLargestRadiance);
+    if (light->find("up") && light->at("up").numbers(3) != json{0, 1, 0})
+        light->at("up").fail("is not (0, 1, 0); turn the scene so that its sky is towards +y");
 }
 
 void warnOfNode(const JsonReader& node, const JsonReader& root) {
@@ -64,24 +69,6 @@ void warnOfNode(const JsonReader& node, const JsonReader& root) {
         (void)skin->index(root.sizeOf("skins"), "skins");
         skin->warn("skins are not supported; the mesh is rendered in its bind pose, at its node");
     }
-}
-
-json verifyPerspective(const JsonReader& perspective) {
-    const JsonReader yfov = perspective.at("yfov");
-    if (!(yfov.number() > 0.0 && yfov.number() < std::numbers::pi))
-        yfov.fail(fmt::format("is {} but must be an angle in radians between 0 and pi", yfov.number()));
-    json result{{"yfov", yfov.number()}, {"znear", 1.0}};
-    const double znear = perspective.find("znear") ? perspective.at("znear").number() : 0.0;
-    const double zfar = perspective.find("zfar") ? perspective.at("zfar").number() : kHuge;
-    if (!(znear > 0.0 && zfar > znear))
-        perspective.warn("znear or zfar is missing or invalid; neither clips, so both are ignored");
-    if (const std::optional<JsonReader> aspect = perspective.find("aspectRatio")) {
-        if (aspect->number() > 0.0)
-            result["aspectRatio"] = aspect->number();
-        else
-            aspect->warn("is not positive; ignored");
-    }
-    return result;
 }
 
 /// node -> the reference that makes another node its parent; empty for roots.
@@ -131,21 +118,9 @@ json verifyNode(const JsonReader& node, const JsonReader& root) {
         result["camera"] = camera->index(root.sizeOf("cameras"), "cameras");
     for (std::size_t i = 0; i < node.sizeOf("children"); ++i)
         result["children"].push_back(node.at("children").element(i).index(root.sizeOf("nodes"), "nodes"));
+    verifyLightOf(node, root, result);
     verifySphere(node, root, result);
     warnOfNode(node, root);
-    return result;
-}
-
-json verifyCamera(const JsonReader& camera, const JsonReader&) {
-    json result{{"type", camera.at("type").string()}};
-    copyName(camera, result);
-    if (result["type"] == "perspective") {
-        result["perspective"] = verifyPerspective(camera.at("perspective"));
-        return result;
-    }
-    if (result["type"] != "orthographic") camera.at("type").fail("must be perspective or orthographic");
-    camera.warn("orthographic cameras are not supported; left out");
-    result["orthographic"] = {{"xmag", 1.0}, {"ymag", 1.0}, {"znear", 0.0}, {"zfar", 1.0}};
     return result;
 }
 
@@ -155,6 +130,7 @@ json verifyScene(const JsonReader& scene, const JsonReader& root) {
     result["nodes"] = json::array();
     for (std::size_t i = 0; i < scene.sizeOf("nodes"); ++i)
         result["nodes"].push_back(scene.at("nodes").element(i).index(root.sizeOf("nodes"), "nodes"));
+    verifyHemisphereLight(scene, result);
     return result;
 }
 

@@ -3,11 +3,16 @@
 
 #include "load/json_reader.h"
 
+#include <limits>
+
 namespace isolux {
+
+/// Radiance and intensity become single precision on devices.
+constexpr double kLargestRadiance = std::numeric_limits<float>::max();
 
 /// asset.version, and extensions that are required or used.
 void verifyAsset(const JsonReader& root);
-void verifyExtensions(const JsonReader& root);
+[[nodiscard]] nlohmann::json verifyExtensions(const JsonReader& root); ///< those required
 
 [[nodiscard]] nlohmann::json verifyBufferView(const JsonReader& view, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyAccessor(const JsonReader& accessor, const JsonReader& root);
@@ -17,11 +22,22 @@ void verifyExtensions(const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyNode(const JsonReader& node, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyScene(const JsonReader& scene, const JsonReader& root);
 
+/// Whether a component type of an accessor may be that of indices: unsigned integers.
+[[nodiscard]] bool isIndexType(std::uint64_t componentType);
+
 /// That nodes form trees (no node has two parents, none is its own ancestor) and that scenes list roots.
 void verifyHierarchy(const JsonReader& root);
 
-/// References among what is not supported yet (textures, images, samplers, skins, animations, lights).
+/// References among what is not supported yet (textures, images, samplers, skins, animations).
 void verifyReferences(const JsonReader& root);
+
+/// The lights of KHR_lights_punctual, and the one that a node refers to.
+[[nodiscard]] nlohmann::json verifyLights(const JsonReader& root);
+void verifyLightOf(const JsonReader& node, const JsonReader& root, nlohmann::json& result);
+
+/// An object's extension of this name, and its "extras" member of this name, if it is there.
+[[nodiscard]] std::optional<JsonReader> findExtension(const JsonReader& object, std::string_view name);
+[[nodiscard]] std::optional<JsonReader> findExtra(const JsonReader& object, std::string_view name);
 
 /// Copies a name, if there is one.
 void copyName(const JsonReader& from, nlohmann::json& to);

@@ -48,26 +48,12 @@ void verifyAnimations(const JsonReader& root) {
     if (count > 0) root.at("animations").warn("animations are not supported; the scene is rendered at rest");
 }
 
-std::optional<JsonReader> findLights(const JsonReader& owner) {
-    const std::optional<JsonReader> extensions = owner.find("extensions");
-    return extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
-}
-
-void verifyLights(const JsonReader& root) {
-    const std::optional<JsonReader> lights = findLights(root);
-    const std::size_t lightCount = lights ? lights->sizeOf("lights") : 0;
-    for (std::size_t i = 0; i < root.sizeOf("nodes"); ++i)
-        if (const std::optional<JsonReader> light = findLights(root.at("nodes").element(i)))
-            (void)light->at("light").index(lightCount, "KHR_lights_punctual lights");
-}
-
 } // namespace
 
 void verifyReferences(const JsonReader& root) {
     verifyTextureSources(root);
     verifySkins(root);
     verifyAnimations(root);
-    verifyLights(root);
 }
 
 } // namespace isolux
