@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/platform.h"
+#include "scene/camera_matrices.h"
 
 #include <fmt/format.h>
 
@@ -13,8 +14,12 @@
 namespace isolux {
 namespace {
 
-Metadata metadataOf(const RunReport& report) {
-    return {{"samplesPerPixel", unsignedMetadata(report.samplesPerPixel)},
+Metadata metadataOf(const SceneRun& run, const RunReport& report) {
+    const Camera& camera = run.scene.cameras[run.settings.camera];
+    const double aspect = static_cast<double>(run.settings.width) / static_cast<double>(run.settings.height);
+    return {{"worldToCamera", matrixMetadata(cameraFromWorld(camera))},
+            {"worldToNDC", matrixMetadata(ndcFromWorld(camera, aspect))},
+            {"samplesPerPixel", unsignedMetadata(report.samplesPerPixel)},
             {"renderTimeSeconds", report.timings.render},
             {"isolux/version", std::string(ISOLUX_VERSION)},
             {"isolux/seed", unsignedMetadata(report.seed)},
@@ -44,14 +49,27 @@ std::filesystem::path partialName(const std::filesystem::path& path) {
     return path.parent_path() / (path.stem().string() + ".partial" + path.extension().string());
 }
 
+/// Names by FirstHit::object: the instances, then the spheres.
+ObjectNames namesOf(const Scene& scene) {
+    ObjectNames names;
+    const auto add = [&](const std::string& name, std::uint32_t material) {
+        names.objects.push_back(name);
+        names.materials.push_back(scene.materials[material].name);
+    };
+    for (const Instance& instance : scene.instances) add(instance.name, scene.meshes[instance.mesh].material);
+    for (const Sphere& sphere : scene.spheres) add(sphere.name, sphere.material);
+    return names;
+}
+
 /// One file. Throws Error if an interrupted render finds a better one under both of its names.
-void writeOutput(const std::filesystem::path& path, const Image& image, const Film& film, Completion completion) {
+void writeOutput(const std::filesystem::path& path, const Image& image, const DisplayTransform& display,
+                 const Film& film, Completion completion) {
     std::filesystem::path target = path;
     if (completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount())) target = partialName(path);
     if (target != path && mayHoldMore(target, film.minSampleCount()))
         throwFailure(path.string(),
                      fmt::format("interrupted, and {} may hold more samples: nothing was written", target.string()));
-    writeImage(target, image);
+    writeImage(target, image, display);
     if (completion == Completion::interrupted)
         spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(), film.maxSampleCount(),
                      target.string());
@@ -59,13 +77,13 @@ void writeOutput(const std::filesystem::path& path, const Image& image, const Fi
 
 } // namespace
 
-void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report,
+void writeOutputs(const OutputRequest& request, const Film& film, const SceneRun& run, const RunReport& report,
                   Completion completion) {
-    const Image image = imageFromFilm(film, metadataOf(report));
+    const Image image = imageFromFilm(film, request.layers, namesOf(run.scene), metadataOf(run, report));
     std::optional<Error> first;
-    for (const std::filesystem::path path : paths) {
+    for (const std::filesystem::path path : request.paths) {
         try {
-            writeOutput(path, image, film, completion);
+            writeOutput(path, image, request.display, film, completion);
         } catch (const Error& error) {
             if (first)
                 spdlog::error("{}", error.what());

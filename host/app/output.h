@@ -1,8 +1,9 @@
 // What a render leaves on disk: images with metadata, and reports.
 #pragma once
 
+#include "app/backends.h"
 #include "film/film.h"
-#include "film/image.h"
+#include "film/layers.h"
 #include "report/run_report.h"
 
 #include <string>
@@ -12,10 +13,17 @@ namespace isolux {
 
 enum class Completion { whole, interrupted };
 
+/// What to write, and where.
+struct OutputRequest {
+    std::vector<std::string> paths;
+    LayerSet layers{Layer::variance, Layer::samples};
+    DisplayTransform display; ///< of PNG files
+};
+
 /// Writes the film to every path. An interrupted render replaces a file only if that holds no more samples; otherwise
 /// it goes beside it, with ".partial" in its name. One file that cannot be written does not keep the others from being
 /// so; the first error is thrown at the end.
-void writeOutputs(const std::vector<std::string>& paths, const Film& film, const RunReport& report,
+void writeOutputs(const OutputRequest& request, const Film& film, const SceneRun& run, const RunReport& report,
                   Completion completion);
 
 /// Writes a text file to a temporary name, flushed and renamed. Throws Error.
