@@ -189,7 +189,7 @@ void goOnOrEnd() {
         beginNearest();
     } else {
         if (path.ending == kEndsByRoulette) recordEvent(kSignatureRoulette);
-        endSample();
+        path.phase = kPhaseEnded;
     }
 }
 
@@ -204,8 +204,7 @@ void shadeHit(RayTransform transform) {
     }
     addEmission(surface, material, path.traversal.distance);
     if (path.depth >= render.depthLights.x) {
-        path.ending = kEnds;
-        goOnOrEnd();
+        path.phase = kPhaseEnded;
     } else {
         vec3 origin = offsetOrigin(surface.position, surface.error, surface.facing);
         bool lit = kLights != kLightsNone && render.depthLights.w > 0u;
@@ -229,30 +228,43 @@ void finishShadow() {
     goOnOrEnd();
 }
 
-// One ray, or as much of it as the budget allows. Functions on this way leave at their ends only: Mesa turns an early
+// The pending shadow ray and then the ray to the nearest hit, or as much of them as the budget allows. Whether that hit, or
+// that there is none, is found. A loop with little in it: drivers without branches run all of its body for every ray.
+bool traceRays(inout uint budget, out RayTransform transform) {
+    bool found = false;
+    while (!found && path.phase <= kPhaseShadow && budget > 0u) {
+        --budget;
+        bool shadow = path.phase == kPhaseShadow;
+        Query query;
+        query.ray = Ray(path.ray.origin, shadow ? path.shadowDirection : path.ray.direction);
+        query.kind = shadow ? kAnyHit : kNearestHit;
+        query.ignored = path.leaves;
+        query.alsoIgnored = shadow ? path.shadowPrimitive : kNone;
+        transform = transformFor(query.ray);
+        traverse(query, transform, path.traversal, budget, film.faults.y);
+        if (path.traversal.stackCount == 0u) {
+            film.counts.y += 1u;
+            found = !shadow;
+            if (shadow) finishShadow();
+        }
+    }
+    return found;
+}
+
+// One bounce, or as much of it as the budget allows. Functions on this way leave at their ends only: Mesa turns an early
 // return into a loop of one iteration, which would count against its limit.
 void advance(inout uint budget) {
-    bool shadow = path.phase == kPhaseShadow;
-    Query query;
-    query.ray = Ray(path.ray.origin, shadow ? path.shadowDirection : path.ray.direction);
-    query.kind = shadow ? kAnyHit : kNearestHit;
-    query.ignored = path.leaves;
-    query.alsoIgnored = shadow ? path.shadowPrimitive : kNone;
-    RayTransform transform = transformFor(query.ray);
-    traverse(query, transform, path.traversal, budget, film.faults.y);
-    if (path.traversal.stackCount == 0u) {
-        film.counts.y += 1u;
-        if (shadow) {
-            finishShadow();
-        } else if (path.traversal.primitive == kNone) {
+    RayTransform transform;
+    if (traceRays(budget, transform)) {
+        if (path.traversal.primitive == kNone) {
             recordEvent(kNone);
             addEnvironment();
-            path.ending = kEnds;
-            goOnOrEnd();
+            path.phase = kPhaseEnded;
         } else {
             shadeHit(transform);
         }
     }
+    if (path.phase == kPhaseEnded) endSample();
 }
 
 void loadPath(uint lane) {

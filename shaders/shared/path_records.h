@@ -69,7 +69,8 @@ ISOLUX_CHECK_SIZE(CompletionRecord, 16);
 // PathRecord.progress.x
 ISOLUX_CONSTANT uint kPhaseNearest = 0u; // the next ray looks for the nearest hit
 ISOLUX_CONSTANT uint kPhaseShadow = 1u;  // the next ray asks whether the light is seen
-ISOLUX_CONSTANT uint kPhaseDone = 2u;    // all samples of the batch are on the film
+ISOLUX_CONSTANT uint kPhaseEnded = 2u;   // the sample is complete; never stored
+ISOLUX_CONSTANT uint kPhaseDone = 3u;    // all samples of the batch are on the film
 
 // PathRecord.bounce.y: what follows the pending shadow ray
 ISOLUX_CONSTANT uint kGoesOn = 0u;
