@@ -128,7 +128,6 @@ std::uint8_t quantise(double value) {
     if (!(value > 0.0)) return 0;
     return static_cast<std::uint8_t>(std::lround(255.0 * std::min(value, 1.0)));
 }
-std::uint8_t encodeSrgb(double linear) { return quantise(linear > 0.0 ? srgbFromLinear(std::min(linear, 1.0)) : 0.0); }
 
 /// Metadata as text, without what describes channels that a PNG does not have.
 void setTexts(OIIO::ImageSpec& spec, const Metadata& metadata) {
@@ -149,7 +148,7 @@ FileContent pngContent(const Image& image, const fs::path& path, const DisplayTr
         const double coverage = alpha ? double{image.value(pixel, *alpha)} : 1.0;
         const double scale = coverage > 0.0 ? 1.0 / coverage : 1.0;
         const Vec3d shown = applyDisplay(display, scale * Vec3d(rgbValue(image, pixel, rgb)));
-        for (int c = 0; c < 3; ++c) content.bytes.push_back(encodeSrgb(shown[c]));
+        for (int c = 0; c < 3; ++c) content.bytes.push_back(quantise(srgbFromLinear(shown[c])));
         if (alpha) content.bytes.push_back(quantise(coverage));
     }
     setTexts(content.spec, image.metadata);

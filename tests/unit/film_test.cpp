@@ -1,18 +1,16 @@
 // Film statistics and image files: what is written is what is read, and no failure costs the file that was there.
-#include "core/error.h"
-#include "core/platform.h"
-#include "film/image.h"
+#include "film_fixture.h"
+
+#include "core/log.h"
 #include "film/srgb.h"
 
-#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
 
 #include <cmath>
-#include <csignal>
-#include <fstream>
-#include <random>
+#include <memory>
 #include <span>
+#include <sstream>
 
-#include <sys/resource.h>
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/lsan_interface.h>
 #endif
@@ -20,75 +18,7 @@
 namespace isolux {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A folder of its own for each test, gone when the test is.
-class ImageFile : public testing::Test {
-protected:
-    ImageFile() : folder_(fs::temp_directory_path() / ("isolux_film_test." + std::to_string(processId()))) {
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    ~ImageFile() override { fs::remove_all(folder_); }
-
-    [[nodiscard]] fs::path path(const std::string& name) const { return folder_ / name; }
-    [[nodiscard]] std::size_t fileCount() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
-
-private:
-    fs::path folder_;
-};
-
-Image makeImage(std::uint32_t width, std::uint32_t height, std::vector<std::string> channels) {
-    Image image;
-    image.width = width;
-    image.height = height;
-    image.channels = std::move(channels);
-    image.values.resize(image.pixelCount() * image.channels.size());
-    return image;
-}
-
-/// An image of one pixel with the colour `r`, `g`, `b`.
-Image onePixel(float r, float g, float b) {
-    Image image = makeImage(1, 1, {"R", "G", "B"});
-    image.values = {r, g, b};
-    return image;
-}
-
-Film makeFilm(std::uint32_t width, std::uint32_t height, int samples) {
-    Film film(width, height);
-    std::mt19937 engine(7);
-    std::exponential_distribution<double> radiance(2.0);
-    for (PixelStatistics& pixel : film.pixels) {
-        for (int s = 0; s < samples; ++s) {
-            pixel.add({radiance(engine), radiance(engine), radiance(engine)});
-            pixel.hitCount += s % 2 == 0;
-        }
-    }
-    return film;
-}
-
-std::string readBytes(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-/// Runs `action`, which must throw an Error with this code, and returns its message.
-template <typename Action> std::string errorOf(ExitCode code, const Action& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "no Error was thrown";
-    return "";
-}
-
-void expectMentions(const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << "\"" << part << "\" is not in: " << text;
-}
+using namespace film_test;
 
 // --- Statistics ---
 
@@ -334,6 +264,51 @@ TEST_F(ImageFile, HdrHoldsBlackAndWhatIsNoNumber) {
     EXPECT_GT(read.values[5], 1e38f);
 }
 
+/// From what rounds to nothing to the largest: the error is half a step of eight bits of the largest channel, at most
+/// 2^-9 of a power of two that it reaches half of.
+TEST_F(ImageFile, HdrKeepsItsPrecisionOverTheWholeRange) {
+    Image image = makeImage(400, 1, {"R", "G", "B"});
+    for (std::size_t i = 0; i < 400; ++i) {
+        const double largest = 1e-30 * std::pow(1.6e68, static_cast<double>(i) / 399.0);
+        for (std::size_t c = 0; c < 3; ++c)
+            image.values[3 * i + c] = std::min(1.6e38f, static_cast<float>(largest / std::exp2(c)));
+    }
+    writeImage(path("a.hdr"), image);
+    const Image read = readImage(path("a.hdr"));
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+        const double largest = double{image.values[i / 3 * 3]};
+        EXPECT_NEAR(double{read.values[i]}, double{image.values[i]}, largest / 256.0) << i;
+    }
+}
+
+/// What is logged while this object lives.
+class CapturedLog {
+public:
+    CapturedLog() {
+        spdlog::set_default_logger(
+            std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(messages_)));
+    }
+    ~CapturedLog() { spdlog::set_default_logger(before_); }
+    CapturedLog(const CapturedLog&) = delete;
+    CapturedLog& operator=(const CapturedLog&) = delete;
+
+    [[nodiscard]] std::string text() const { return messages_.str(); }
+
+private:
+    std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
+    std::ostringstream messages_;
+};
+
+TEST_F(ImageFile, HdrSaysWhatItClamped) {
+    const CapturedLog log;
+    writeImage(path("a.hdr"), onePixel(1, 2, 3));
+    EXPECT_EQ(log.text(), "");
+    Image image = makeImage(4, 1, {"R", "G", "B"});
+    image.values = {1, 1, 1, NAN, 1, 1, 1, 2e38f, INFINITY, 1, 1, -1};
+    writeImage(path("a.hdr"), image);
+    expectMentions(log.text(), "a.hdr: 3 pixels");
+}
+
 // --- Failures ---
 
 TEST_F(ImageFile, ExtensionsAreCheckedInAnyCase) {
@@ -374,28 +349,6 @@ TEST_F(ImageFile, FailedWritesLeaveNoTemporaryFile) {
     errorOf(ExitCode::failure, [&] { writeImage(path("gray.png"), makeImage(1, 1, {"Y"})); });
     EXPECT_EQ(fileCount(), 1u);
 }
-
-/// Files of this process may not grow beyond some size: the nearest to a full disk that needs no disk.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) {
-        handler_ = std::signal(SIGXFSZ, SIG_IGN);
-        getrlimit(RLIMIT_FSIZE, &before_);
-        rlimit limit = before_;
-        limit.rlim_cur = bytes;
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-    FileSizeLimit(const FileSizeLimit&) = delete;
-    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
-private:
-    rlimit before_{};
-    void (*handler_)(int) = nullptr;
-};
 
 TEST_F(ImageFile, AFullDiskCostsNothingThatWasThere) {
     const Image image = imageFromFilm(makeFilm(64, 48, 4), {});
