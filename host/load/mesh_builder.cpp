@@ -2,6 +2,7 @@
 
 #include "load/context.h"
 #include "load/topology.h"
+#include "load/verify.h"
 
 #include <fmt/format.h>
 
@@ -86,7 +87,8 @@ bool MeshBuilder::isSupported(const Source& source) {
         return false;
     }
     if (!isUsable(position, source, kLeftOut)) return false;
-    return source.primitive.indices < 0 || isUsable(source.primitive.indices, source, kLeftOut);
+    const int indices = attributeOf(source.primitive, kIndicesAttribute);
+    return indices < 0 || isUsable(indices, source, kLeftOut);
 }
 
 Mesh MeshBuilder::buildMesh(const Source& source) {
@@ -106,7 +108,7 @@ Mesh MeshBuilder::buildMesh(const Source& source) {
 
 /// The accessor that says how many indices a primitive has: that of its indices, or of its vertices in order.
 const tinygltf::Accessor& MeshBuilder::sequenceOf(const Source& source) const {
-    const int indices = source.primitive.indices;
+    const int indices = attributeOf(source.primitive, kIndicesAttribute);
     return accessorAt(indices >= 0 ? indices : attributeOf(source.primitive, "POSITION"));
 }
 
@@ -119,13 +121,14 @@ std::vector<std::uint32_t> MeshBuilder::readIndices(const Source& source, std::s
         context_.warn(source.pointer, "fewer than three indices make no triangle; left out");
     else if (indices.size() < count)
         context_.warn(source.pointer, "its indices are no multiple of three; the last ones are ignored");
-    if (source.primitive.indices < 0) {
+    const int accessor = attributeOf(source.primitive, kIndicesAttribute);
+    if (accessor < 0) {
         std::iota(indices.begin(), indices.end(), 0u);
         return indices;
     }
-    const AccessorView view(asset_, static_cast<std::size_t>(source.primitive.indices), context_);
+    const AccessorView view(asset_, static_cast<std::size_t>(accessor), context_);
     const auto fail = [&](std::size_t i, std::string_view reason) {
-        context_.fail(fmt::format("/accessors/{}", source.primitive.indices),
+        context_.fail(fmt::format("/accessors/{}", accessor),
                       fmt::format("element {} is {}, {}", i, indices[i], reason));
     };
     const std::uint32_t restart = view.restartIndex();
@@ -182,15 +185,15 @@ void MeshBuilder::charge(const Source& source) {
     const std::uint64_t bytes = bytesToBuild(source);
     bytesBuilt_ += bytes;
     if (sequence.bufferView < 0) bytesClaimed_ += bytes;
+    if (exceeds(bytesClaimed_, kClaimsAllowed))
+        context_.fail(source.pointer, fmt::format("its {} elements without a bufferView come to over {} times the "
+                                                  "size of the buffers; store them in one",
+                                                  sequence.count, kLargestFactor));
     if (exceeds(bytesBuilt_, kAlwaysAllowed))
         context_.fail("/meshes",
                       fmt::format("the meshes expand to over {} times the size of the buffers; refer to the same "
                                   "mesh from several nodes instead of repeating its primitives",
                                   kLargestFactor));
-    if (exceeds(bytesClaimed_, kClaimsAllowed))
-        context_.fail(source.pointer, fmt::format("its {} elements without a bufferView come to over {} times the "
-                                                  "size of the buffers; store them in one",
-                                                  sequence.count, kLargestFactor));
 }
 
 /// Indices, vertices, triangles, and the indices of sparse accessors that are checked on the way.
@@ -198,10 +201,9 @@ std::uint64_t MeshBuilder::bytesToBuild(const Source& source) const {
     const std::uint64_t indices = sequenceOf(source).count;
     std::uint64_t bytes = indices * (sizeof(std::uint32_t) + 2 * sizeof(Vec3f));
     bytes += mostTriangles(source.primitive.mode, indices) * sizeof(Mesh::triangles[0]);
-    for (const int accessor :
-         {source.primitive.indices, attributeOf(source.primitive, "POSITION"), attributeOf(source.primitive, "NORMAL")})
-        if (accessor >= 0 && accessorAt(accessor).sparse.isSparse)
-            bytes += static_cast<std::uint64_t>(accessorAt(accessor).sparse.count) * sizeof(std::uint32_t);
+    for (const auto& [name, accessor] : source.primitive.attributes)
+        if (const auto& sparse = accessorAt(accessor).sparse; sparse.isSparse)
+            bytes += static_cast<std::uint64_t>(sparse.count) * sizeof(std::uint32_t);
     return bytes;
 }
 

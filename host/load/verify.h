@@ -6,6 +6,10 @@
 
 namespace isolux {
 
+/// Where the clean document names a primitive's indices, among its attributes: tinygltf refuses indices that have no
+/// bufferView, which sparse ones need not have.
+constexpr const char* kIndicesAttribute = "_INDICES";
+
 /// The clean document: asset, scenes, nodes, meshes, materials, cameras, accessors and bufferViews. Warns of what it
 /// leaves out; throws Error at the pointer of what is wrong.
 [[nodiscard]] nlohmann::json verifyDocument(const JsonReader& root);

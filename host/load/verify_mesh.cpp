@@ -1,4 +1,5 @@
 // Meshes: references of primitives, and what of them is supported.
+#include "load/verify.h"
 #include "load/verify_parts.h"
 
 #include <fmt/format.h>
@@ -97,7 +98,7 @@ json verifyPrimitive(const JsonReader& primitive, const JsonReader& root) {
     }
     warnOfAttributes(attributes);
     if (const std::optional<JsonReader> indices = primitive.find("indices"))
-        result["indices"] = verifyIndices(*indices, root);
+        result["attributes"][kIndicesAttribute] = verifyIndices(*indices, root);
     if (const std::optional<JsonReader> material = primitive.find("material"))
         result["material"] = material->index(root.sizeOf("materials"), "materials");
     const std::uint64_t mode = primitive.find("mode") ? primitive.at("mode").integerBetween(0, 6) : kTriangles;

@@ -97,6 +97,89 @@ TEST(SharedScenes, SeedScenesLoad) {
         const Scene scene = loadScene(file);
         EXPECT_GT(primitiveCount(scene), 0u) << file;
         EXPECT_EQ(scene.cameras.size(), 1u) << file;
+        for (const std::string& warning : scene.warnings)
+            EXPECT_EQ(warning.find("punctual"), std::string::npos) << file << ": " << warning;
+    }
+}
+
+TEST(SharedScenes, SeedScenesKeepTheirLights) {
+    const std::optional<fs::path> folder = sharedScenes();
+    if (!folder) return;
+    const Scene banana = loadScene(*folder / "seed" / "banana.glb");
+    EXPECT_EQ(banana.environment.radiance, Vec3d(1.0));
+    EXPECT_EQ(banana.environment.extent, EnvironmentExtent::upperHalf);
+    ASSERT_EQ(banana.punctualLights.size(), 1u);
+    EXPECT_EQ(banana.punctualLights[0].kind, PunctualKind::directional);
+    EXPECT_EQ(banana.punctualLights[0].name, "Area_001");
+    EXPECT_LT(banana.punctualLights[0].direction.y, -0.7); // down, from the matrix of its node
+    const Scene cube = loadScene(*folder / "seed" / "tiny" / "cube.glb");
+    EXPECT_FALSE(cube.environment.emits());
+    EXPECT_EQ(cube.punctualLights.at(0).kind, PunctualKind::point);
+    EXPECT_EQ(cube.punctualLights[0].position, Vec3d(0, 1.49, 0));
+}
+
+/// What a file of the collection holds.
+struct FileFigures {
+    const char* file;
+    std::size_t triangles;
+    std::size_t cameras;
+    std::size_t lights;
+};
+
+TEST(SharedScenes, SampleFilesLoadWithTheExpectedFigures) {
+    const std::optional<fs::path> folder = sharedScenes();
+    if (!folder) return;
+    const std::vector<FileFigures> files = {
+        {"AnimatedMorphCube-glTF-Quantized/AnimatedMorphCube.gltf", 12, 1, 0},
+        {"SimpleSparseAccessor/SimpleSparseAccessor.gltf", 12, 1, 0},
+        {"MeshPrimitiveModes/MeshPrimitiveModes.gltf", 6 + 4 + 6, 1, 0},
+        {"PrimitiveModeNormalsTest.glb", 2562, 1, 0},
+        {"Cameras/Cameras.gltf", 2, 2, 0},
+        {"BoxInterleaved.glb", 12, 1, 0},
+        {"LightsPunctualLamp/LightsPunctualLamp.gltf", 6000, 1, 5},
+        {"MultipleScenes/MultipleScenes.gltf", 2, 1, 0},
+    };
+    for (const FileFigures& expected : files) {
+        const Scene scene = loadScene(*folder / "gltf" / expected.file);
+        EXPECT_EQ(primitiveCount(scene), expected.triangles) << expected.file;
+        EXPECT_EQ(scene.cameras.size(), expected.cameras) << expected.file;
+        EXPECT_EQ(scene.punctualLights.size(), expected.lights) << expected.file;
+    }
+}
+
+TEST(SharedScenes, SampleFilesDecodeToTheShapesTheyDescribe) {
+    const std::optional<fs::path> shared = sharedScenes();
+    if (!shared) return;
+    const fs::path folder = *shared / "gltf";
+    const Scene modes = loadScene(folder / "MeshPrimitiveModes" / "MeshPrimitiveModes.gltf");
+    for (const char* name : {"node 4", "node 5", "node 6"}) // triangles, a strip and a fan, wound alike
+        EXPECT_TRUE(allFace(trianglesOf(modes, name), Vec3d(0, 0, 1))) << name;
+    const Scene sparse = loadScene(folder / "SimpleSparseAccessor" / "SimpleSparseAccessor.gltf");
+    EXPECT_EQ(sparse.meshes.at(0).positions.at(8), Vec3f(1, 2, 0));
+    EXPECT_EQ(sparse.meshes[0].positions.at(9), Vec3f(2, 1, 0));
+    EXPECT_EQ(sparse.meshes[0].positions.at(12), Vec3f(5, 4, 0));
+    const fs::path quantised = folder / "AnimatedMorphCube-glTF-Quantized" / "AnimatedMorphCube.gltf";
+    const Scene cube = loadScene(quantised);
+    EXPECT_NEAR(glm::distance(worldBounds(cube).extent(), Vec3d(2.0)), 0.0, 1e-3); // steps of 100 * 3.65e-6
+    for (const Vec3f& normal : cube.meshes.at(0).normals) EXPECT_EQ(glm::length(normal), 1.0f);
+    EXPECT_EQ(worldBounds(loadScene(folder / "BoxInterleaved.glb")).extent(), Vec3d(1.0));
+    const Scene cameras = loadScene(folder / "Cameras" / "Cameras.gltf");
+    EXPECT_EQ(cameras.cameras.at(1).projection, Projection::orthographic);
+    EXPECT_EQ(cameras.cameras[1].ymag, 1.0);
+    EXPECT_EQ(cameras.cameras[1].name, "camera 1");
+}
+
+TEST(SharedScenes, SampleFilesLoadUnlessTheyRequireWhatIsNotSupported) {
+    const std::optional<fs::path> folder = sharedScenes();
+    if (!folder) return;
+    const std::vector<fs::path> files = gltfFilesIn(*folder / "gltf");
+    EXPECT_GE(files.size(), 49u);
+    for (const fs::path& file : files) {
+        try {
+            EXPECT_GT(primitiveCount(loadScene(file)), 0u) << file;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(": /extensionsRequired/"), std::string::npos) << error.what();
+        }
     }
 }
 
@@ -122,6 +205,9 @@ bool mustBeRefused(const std::string& name) {
                              "huge_accessor",
                              "0xffffffff",
                              "light_index_oob",
+                             "spot_invalid_angles",
+                             "empty_light_object",
+                             "orthographic_xy",
                              "nan_inf",
                              "node_cycle",
                              "integer-out-of-bounds",

@@ -122,5 +122,42 @@ TEST_F(LoadTest, DamagedFilesAreSurvived) {
     }
 }
 
+/// A strip of quantised vertices, some replaced by a sparse accessor, under sparse indices, beside a spot light.
+std::string intricateFile() {
+    const std::string data = bytesOf<std::int16_t>({0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0, 0, 9, 9, 0, 0}) + // positions
+                             bytesOf<std::uint16_t>({0, 1, 2, 3, 1, 3}) + // indices, sparse ones
+                             bytesOf<std::int16_t>({5, 5, 5, 7, 7, 7});   // what they replace
+    const auto sparse = [](int indices, int values) {
+        return json{{"count", 2},
+                    {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                    {"values", {{"bufferView", values}}}};
+    };
+    json document = triangleDocument();
+    document["buffers"] = {{{"byteLength", data.size()}}};
+    document["bufferViews"] = {{{"buffer", 0}, {"byteLength", 32}, {"byteStride", 8}},
+                               {{"buffer", 0}, {"byteOffset", 32}, {"byteLength", 8}},
+                               {{"buffer", 0}, {"byteOffset", 40}, {"byteLength", 4}},
+                               {{"buffer", 0}, {"byteOffset", 44}, {"byteLength", 12}}};
+    document["accessors"] = {{{"bufferView", 0}, {"componentType", 5122}, {"count", 4}, {"type", "VEC3"}},
+                             {{"bufferView", 1}, {"componentType", 5123}, {"count", 4}, {"type", "SCALAR"}}};
+    document["accessors"][0]["sparse"] = sparse(2, 3);
+    document["accessors"][1]["sparse"] = sparse(2, 2);
+    primitiveOf(document).update({{"indices", 1}, {"mode", 5}});
+    document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", json::object()}}};
+    document["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    return glb(chunk(document.dump(), "JSON", ' ') + chunk(data, std::string("BIN\0", 4), ' '));
+}
+
+TEST_F(LoadTest, DamagedIntricateFilesAreSurvived) {
+    const std::string file = intricateFile();
+    EXPECT_EQ(primitiveCount(load(file)), 2u);
+    for (std::size_t i = 0; i < file.size(); ++i)
+        for (const char change : {'\x01', '\x08', '\x80'}) {
+            std::string damaged = file;
+            damaged[i] = static_cast<char>(damaged[i] ^ change);
+            (void)failure(damaged);
+        }
+}
+
 } // namespace
 } // namespace isolux::load_test
