@@ -12,9 +12,9 @@ namespace isolux {
 enum class Measure { solidAngle, discrete };
 
 template <typename Real> struct LightSample {
-    Vec3<Real> wi; ///< unit, towards the light
-    Real pdf = 0;  ///< in `measure`; of the direction alone, or with the choice of the light, as the function says
-    Vec3<Real> emission; ///< towards the receiver, never 0: radiance, or if discrete irradiance on what faces the light
+    Vec3<Real> wi;       ///< unit, towards the light
+    Real pdf = 0;        ///< in `measure`
+    Vec3<Real> emission; ///< towards the receiver: radiance, or if discrete the irradiance of what faces the light
     Ray<Real> shadowRay; ///< ends at the light
     std::uint32_t primitive = kNoPrimitive; ///< that emits, if one does
     Measure measure = Measure::solidAngle;

@@ -8,7 +8,8 @@
 
 namespace isolux {
 
-/// The light as seen from `origin`; pdf 1. None for one at that very point, or a spot that leaves it dark.
+/// The light as seen from `origin`; pdf 1, the choice of the light not included. None for one at that very point, or a
+/// spot that leaves it dark.
 template <typename Real>
 [[nodiscard]] std::optional<LightSample<Real>> samplePunctualLight(const PunctualLight& light,
                                                                    const Vec3<Real>& origin) {

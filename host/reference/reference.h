@@ -21,8 +21,9 @@ struct PixelRegion {
 
 /// Renders samples firstSample ... firstSample + sampleCount - 1 of every pixel on all processors; the result does not
 /// depend on how many there are. The samples are taken in passes over the whole image, of 1, 1, 2, 4, 8 and then 16
-/// samples; `progress` (may be empty) is called after each pass, and if it answers `Continue::no` the film holds the
-/// passes done so far. Throws Error (bad input) if the scene has no camera of the index asked for.
+/// samples; with a time limit they shrink again towards its end, and every pixel has as many samples as time allows.
+/// `progress` (may be empty) is called after each pass, and if it answers `Continue::no` the film holds the passes done
+/// so far. Throws Error (bad input) if the scene has no camera of the index asked for.
 [[nodiscard]] Film renderReference(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options,
                                    const ProgressCallback& progress);
 

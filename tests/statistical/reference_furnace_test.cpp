@@ -1,54 +1,11 @@
 // The CPU reference against radiance known in closed form. Every check is an interval made from the film's own
 // variance, together with a limit on how wide that may be.
-#include "reference/reference.h"
-#include "unit/reference_scenes.h"
-
-#include <gtest/gtest.h>
-
-#include <cstdio>
+#include "statistical/reference_estimates.h"
 
 namespace isolux {
 namespace {
 
 using namespace test;
-
-constexpr double kSigmas = 4.5; // one false alarm in 1e5 comparisons
-
-/// All samples of all pixels as one.
-PixelStatistics renderTotal(const Scene& scene, RenderSettings settings,
-                            Precision precision = Precision::doublePrecision) {
-    settings.seed = 20240229;
-    const Film film = renderReference(scene, settings, {precision}, {});
-    EXPECT_TRUE(film.diagnostics.clean());
-    PixelStatistics total;
-    for (const PixelStatistics& pixel : film.pixels) total.merge(pixel);
-    return total;
-}
-
-double standardError(const PixelStatistics& total, int channel) {
-    return std::sqrt(total.variance()[channel] / static_cast<double>(total.sampleCount));
-}
-
-/// The mean is `expected` within the interval, which together with the error is within `limit` of it (relative).
-void expectRadiance(const PixelStatistics& total, const Vec3d& expected, double limit) {
-    for (int channel = 0; channel < 3; ++channel) {
-        const double error = total.mean[channel] - expected[channel];
-        const double interval = kSigmas * standardError(total, channel) + 1e-6 * expected[channel];
-        EXPECT_LE(std::abs(error), interval) << "channel " << channel;
-        EXPECT_LE(std::abs(error), limit * expected[channel]) << "channel " << channel;
-        EXPECT_LE(interval, 2.0 * limit * expected[channel]) << "too few samples to tell";
-        std::printf("channel %d: %.6f of %.6f, error %+.4f %%, standard error %.4f %%\n", channel, total.mean[channel],
-                    expected[channel], 100.0 * error / expected[channel],
-                    100.0 * standardError(total, channel) / expected[channel]);
-    }
-}
-
-RenderSettings squareImage(std::uint32_t size, std::uint32_t samples) {
-    RenderSettings settings;
-    settings.width = settings.height = size;
-    settings.sampleCount = samples;
-    return settings;
-}
 
 /// Late roulette: most of the variance of a furnace is roulette's, so a tight interval costs least without.
 RenderSettings lateRoulette(std::uint32_t samples) {
@@ -122,21 +79,6 @@ TEST(ReferenceFurnace, InsideADoubleSidedSphereLight) {
         builder.camera({6.0, -2.5, 1.5}, {5.0, -2.0, 1.0}, 1.2);
         expectRadiance(renderTotal(builder.scene, squareImage(16, 2000), precision), kFurnace, 0.003);
     }
-}
-
-/// A white floor and a camera that looks at the world's origin on it from the side.
-SceneBuilder floorSeenFromTheSide(const Vec3d& albedo) {
-    SceneBuilder builder;
-    builder.scene.materials[0].baseColor = albedo;
-    builder.mesh(squareMesh(0), scaling({100.0, 100.0, 1.0}));
-    builder.camera({3.0, 0.0, 0.2}, Vec3d(0.0), 1e-6);
-    return builder;
-}
-
-RenderSettings onePoint(std::uint32_t samples) {
-    RenderSettings settings = squareImage(4, samples);
-    settings.maxDepth = 1;
-    return settings;
 }
 
 /// Form factor from a point to the square [-a, a]^2 at height h above it (Howell, configuration B-4, four times).

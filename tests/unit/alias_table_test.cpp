@@ -113,5 +113,71 @@ TEST(LightTable, ChoosesByPowerAndSkipsWhatHasNoArea) {
     EXPECT_NEAR(lights.choice.pdf[2], 4.0 * kPi / total, 1e-9);
 }
 
+PunctualLight punctual(PunctualKind kind, const Vec3d& intensity) {
+    PunctualLight light;
+    light.kind = kind;
+    light.intensity = intensity;
+    light.cosInner = 0.9;
+    light.cosOuter = 0.6;
+    return light;
+}
+
+/// An unlit ball of radius 1: its box has the half diagonal sqrt(3), so a disc of area 3 pi stands for the scene.
+Scene ballScene() {
+    Scene scene;
+    scene.materials.resize(2);
+    scene.materials[1].emission = Vec3d(0.5);
+    scene.spheres.push_back({"ball", Vec3d(2.0), 1.0, 0});
+    return scene;
+}
+
+TEST(LightTable, KnowsThePowerOfEveryKind) {
+    Scene scene = ballScene();
+    scene.spheres.push_back({"lamp", Vec3d(2.0), 0.5, 1}); // in the ball's box
+    scene.punctualLights = {punctual(PunctualKind::spot, Vec3d(2.0)), punctual(PunctualKind::point, {1.0, 0.0, 0.0}),
+                            punctual(PunctualKind::directional, Vec3d(3.0))};
+    scene.environment = {Vec3d(0.0, 1.0, 0.0), EnvironmentExtent::upperHalf};
+    const LightTable lights = buildLightTable(scene);
+    EXPECT_EQ(lights.lights, (std::vector<Light>{{LightKind::area, 1},
+                                                 {LightKind::punctual, 0},
+                                                 {LightKind::punctual, 1},
+                                                 {LightKind::punctual, 2},
+                                                 {LightKind::environment, 0}}));
+    EXPECT_EQ(lights.lightOf, (std::vector<std::uint32_t>{kNoLight, 0}));
+    EXPECT_EQ(lights.environment, 4u);
+    // All over pi. Lamp: radiance times area. Spot: 2 I (0.1 in full + 0.3 between, of which the mean of t^2 is 1/3).
+    // Point: 4 I, red alone. Directional: E times 3. Environment: 2 pi times 3, green alone.
+    const std::vector<double> powers = {0.5 * kPi, 2.0 * 2.0 * 0.2, 4.0 * 0.2126, 9.0, 6.0 * kPi * 0.7152};
+    const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
+    for (std::size_t i = 0; i < powers.size(); ++i) EXPECT_NEAR(lights.choice.pdf[i], powers[i] / total, 1e-9) << i;
+    scene.environment.extent = EnvironmentExtent::sphere;
+    const double doubled = total + powers[4];
+    EXPECT_NEAR(buildLightTable(scene).choice.pdf[4], 2.0 * powers[4] / doubled, 1e-9);
+}
+
+TEST(LightTable, LeavesOutWhatSendsNothing) {
+    Scene scene = ballScene();
+    scene.punctualLights = {punctual(PunctualKind::point, Vec3d(0.0)), punctual(PunctualKind::spot, Vec3d(1.0)),
+                            punctual(PunctualKind::directional, Vec3d(0.0))};
+    const LightTable lights = buildLightTable(scene);
+    EXPECT_EQ(lights.lights, (std::vector<Light>{{LightKind::punctual, 1}}));
+    EXPECT_EQ(lights.environment, kNoLight);
+    EXPECT_EQ(lights.choice.pdf, std::vector<double>{1.0});
+    scene.punctualLights.clear();
+    EXPECT_TRUE(buildLightTable(scene).lights.empty());
+    EXPECT_TRUE(buildLightTable(scene).choice.bins.empty());
+}
+
+TEST(LightTable, LightsFromAfarNeedSomethingToShineOn) {
+    Scene scene;
+    scene.punctualLights = {punctual(PunctualKind::directional, Vec3d(1.0))};
+    scene.environment.radiance = Vec3d(1.0);
+    const LightTable lights = buildLightTable(scene);
+    EXPECT_TRUE(lights.lights.empty());
+    EXPECT_EQ(lights.environment, kNoLight);
+    scene.punctualLights.push_back(punctual(PunctualKind::point, Vec3d(1.0)));
+    EXPECT_EQ(buildLightTable(scene).lights, (std::vector<Light>{{LightKind::punctual, 1}}));
+}
+
 } // namespace
 } // namespace isolux

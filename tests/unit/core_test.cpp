@@ -1,7 +1,11 @@
 #include "core/math.h"
+#include "core/pacing.h"
 #include "core/philox.h"
 
 #include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
 
 namespace isolux {
 namespace {
@@ -43,6 +47,51 @@ TEST(Box, EmptyAndExtended) {
     box.extend(Vec3d(2, 4, 6));
     EXPECT_EQ(box.halfArea(), 1 * 2 + 2 * 3 + 3 * 1);
     EXPECT_EQ(box.center(), Vec3d(1.5, 3, 4.5));
+}
+
+TEST(Pacing, WithoutALimitPassesAreAsLargeAsTheyMayBe) {
+    const Pacing pacing(std::nullopt, 16);
+    EXPECT_EQ(pacing.nextPass(0, 100), 16u);
+    EXPECT_EQ(pacing.nextPass(96, 100), 4u);
+    EXPECT_EQ(pacing.nextPass(100, 100), 0u);
+    EXPECT_EQ(pacing.nextPass(0, 7), 7u);
+    EXPECT_EQ(pacing.nextPass(0, 0), 0u);
+    EXPECT_EQ(pacing.fraction(0.0, 100), 0.0);
+    EXPECT_EQ(pacing.fraction(12.5, 100), 0.125);
+    EXPECT_EQ(pacing.fraction(100.0, 100), 1.0);
+}
+
+TEST(Pacing, WithoutTimeThereIsOneSample) {
+    for (const double seconds : {0.0, 1e-9, -1.0}) {
+        const Pacing pacing(seconds, 16);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1)); // no clock is too coarse for that
+        EXPECT_EQ(pacing.nextPass(0, 100), 1u);
+        EXPECT_EQ(pacing.nextPass(1, 100), 0u);
+        EXPECT_EQ(pacing.nextPass(0, 0), 0u);
+    }
+    EXPECT_EQ(Pacing(1e-9, 16).fraction(1.0, 100), 1.0) << "time ends before the samples do";
+}
+
+TEST(Pacing, WithTimeToSparePassesGrowFromOne) {
+    const Pacing pacing(1e9, 16);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::uint32_t done = 0;
+    for (const std::uint32_t expected : {1u, 1u, 2u, 4u, 8u, 16u, 16u, 2u, 0u}) {
+        const std::uint32_t pass = pacing.nextPass(done, 50);
+        EXPECT_EQ(pass, expected) << "after " << done;
+        done += pass;
+    }
+    EXPECT_EQ(pacing.fraction(25.0, 50), 0.5);
+}
+
+TEST(Pacing, TheLastPassFitsInWhatIsLeft) {
+    // However long the machine really sleeps: three quarters of the time or more are gone for the first 900.
+    const Pacing pacing(0.02, 1000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(15));
+    EXPECT_LE(pacing.nextPass(900, 100000), 300u);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_EQ(pacing.nextPass(1200, 100000), 0u);
+    EXPECT_EQ(pacing.fraction(1200.0, 100000), 1.0);
 }
 
 } // namespace

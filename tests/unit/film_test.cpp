@@ -404,5 +404,50 @@ TEST_F(ImageFile, HugeImagesAreRefusedBeforeTheyAreDecoded) {
     expectMentions(message, "limit");
 }
 
+/// What a ray met of object `object`, at a depth that tells hits apart.
+FirstHit firstHit(std::uint32_t object, double depth) {
+    return {Vec3d(0.25, 0.5, 0.75), Vec3d(0.0, 0.0, 1.0), depth, object};
+}
+
+PixelAovs pixelOf(std::initializer_list<FirstHit> hits) {
+    PixelAovs pixel;
+    for (const FirstHit& hit : hits) pixel.add(hit);
+    return pixel;
+}
+
+TEST(PixelAovs, SumHitsAndCountThemByObject) {
+    const PixelAovs pixel = pixelOf({firstHit(7, 1.0), firstHit(2, 2.0), firstHit(7, 4.0), firstHit(9, 8.0)});
+    EXPECT_EQ(pixel.albedo, Vec3d(1.0, 2.0, 3.0));
+    EXPECT_EQ(pixel.normal, Vec3d(0.0, 0.0, 4.0));
+    EXPECT_EQ(pixel.depth, 15.0);
+    EXPECT_EQ(pixel.objects, (std::vector<PixelAovs::Coverage>{{2, 1}, {7, 2}, {9, 1}}));
+    EXPECT_EQ(pixel.hitCount(), 4u);
+    EXPECT_EQ(PixelAovs{}.hitCount(), 0u);
+}
+
+TEST(PixelAovs, JoiningIsAdditionInAnyOrder) {
+    const PixelAovs first = pixelOf({firstHit(3, 1.0), firstHit(1, 2.0)});
+    const PixelAovs second = pixelOf({firstHit(5, 4.0), firstHit(3, 8.0), firstHit(0, 16.0)});
+    PixelAovs joined = first;
+    joined.merge(second);
+    PixelAovs reversed = second;
+    reversed.merge(first);
+    EXPECT_EQ(joined, reversed);
+    EXPECT_EQ(joined.objects, (std::vector<PixelAovs::Coverage>{{0, 1}, {1, 1}, {3, 2}, {5, 1}}));
+    EXPECT_EQ(joined.depth, 31.0);
+    EXPECT_EQ(joined.hitCount(), 5u);
+    joined.merge(PixelAovs{});
+    EXPECT_EQ(joined, reversed);
+    joined.addCoverage(4, 1'000'000'000'000);
+    EXPECT_EQ(joined.objects[3], (PixelAovs::Coverage{4, 1'000'000'000'000}));
+}
+
+TEST(PixelAovs, AFilmKeepsOneForEachPixelIfAsked) {
+    Film film(3, 2);
+    EXPECT_TRUE(film.aovs.empty());
+    film.keepAovs();
+    EXPECT_EQ(film.aovs.size(), film.pixels.size());
+}
+
 } // namespace
 } // namespace isolux

@@ -142,6 +142,31 @@ TEST(ReferenceCamera, RaysPassThroughThePixels) {
     EXPECT_EQ(rays.through(7, 8, 0.5, 0.5).origin, Vec3d(1, 2, 3));
 }
 
+template <typename Real> class ReferenceOrthographic : public ::testing::Test {};
+TYPED_TEST_SUITE(ReferenceOrthographic, RealTypes);
+
+TYPED_TEST(ReferenceOrthographic, RaysAreParallelFromAGridOnTheImagePlane) {
+    using Real = TypeParam;
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.position = {1, 2, 3};
+    camera.worldFromCamera = Mat3d(Vec3d(0, 0, -1), Vec3d(0, 1, 0), Vec3d(1, 0, 0)); // looks along -x
+    camera.ymag = 4.0;
+    RenderSettings settings;
+    settings.width = 32;
+    settings.height = 16; // pixels of edge 1/2: 8 over 16
+    const CameraRays<Real> rays(camera, settings);
+    for (std::uint32_t y = 0; y < settings.height; ++y)
+        for (std::uint32_t x = 0; x < settings.width; ++x) {
+            const Ray<Real> ray = rays.through(x, y, Real(0.25), Real(0.75));
+            ASSERT_EQ(ray.direction, Vec3<Real>(-1, 0, 0));
+            const double right = (x + 0.25) * 0.5 - 8.0, up = 4.0 - (y + 0.75) * 0.5;
+            ASSERT_EQ(Vec3d(ray.origin), Vec3d(1, 2, 3) + Vec3d(0, up, -right)) << "powers of two: exact";
+            ASSERT_EQ(ray.tMax, std::numeric_limits<Real>::infinity());
+        }
+    EXPECT_EQ(rays.depth({Real(-6), 50, 60}), 7) << "along the axis, from the camera's plane";
+}
+
 template <typename Real> class ReferenceLights : public ::testing::Test {};
 TYPED_TEST_SUITE(ReferenceLights, RealTypes);
 

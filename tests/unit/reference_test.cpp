@@ -235,6 +235,42 @@ TEST(ReferenceFilm, AnInterruptedRenderHoldsWholePasses) {
     expectSameFilm(film, render(smallRoom(), smallSettings(4)));
 }
 
+TEST(ReferenceFilm, WithoutTimeEveryPixelHasOneSample) {
+    ReferenceOptions options;
+    options.seconds = 0.0;
+    std::vector<double> fractions;
+    const auto note = [&](double fraction) {
+        fractions.push_back(fraction);
+        return Continue::yes;
+    };
+    expectSameFilm(renderReference(smallRoom(), smallSettings(64), options, note),
+                   render(smallRoom(), smallSettings(1)));
+    EXPECT_EQ(fractions, std::vector<double>{1.0});
+}
+
+TEST(ReferenceFilm, TimeToSpareChangesNothing) {
+    ReferenceOptions options;
+    options.seconds = 1e6;
+    expectSameFilm(render(smallRoom(), smallSettings(40), options), render(smallRoom(), smallSettings(40)));
+}
+
+TEST(ReferenceFilm, ATimeLimitEndsTheRenderBetweenPasses) {
+    ReferenceOptions options;
+    options.seconds = 0.02;
+    double last = 0.0;
+    const auto note = [&](double fraction) {
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1.0);
+        last = fraction;
+        return Continue::yes;
+    };
+    const RenderSettings settings = smallSettings(std::numeric_limits<std::uint32_t>::max()); // years
+    const Film film = renderReference(smallRoom(), settings, options, note);
+    EXPECT_GE(film.minSampleCount(), 1u);
+    EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
+    EXPECT_GT(last, 0.0);
+}
+
 TEST(ReferenceFilm, AnEmptySceneIsBlackAndCounted) {
     SceneBuilder builder;
     builder.camera({0, 0, 1}, {0, 0, 0}, 0.5);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace isolux {
 namespace {
@@ -64,6 +65,102 @@ TEST(Scene, ValidationRefusesWhatCannotBeComputed) {
     scene = boxScaledBy(1.0);
     scene.spheres.push_back({"ball", Vec3d(0.0), 0.0, 0});
     EXPECT_THROW(validate(scene), Error);
+}
+
+/// A point light of intensity 1 at the origin.
+PunctualLight pointLight() {
+    PunctualLight light;
+    light.name = "bulb";
+    return light;
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The message with which a box lit by `light` is refused; empty if it is not.
+std::string refusal(const PunctualLight& light) {
+    Scene scene = boxScaledBy(1.0);
+    scene.punctualLights = {light};
+    try {
+        validate(scene);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Scene, ValidationRefusesBadLights) {
+    PunctualLight light = pointLight();
+    EXPECT_EQ(refusal(light), "");
+    for (const double number : {-1.0, kNaN, kInfinity}) {
+        light = pointLight();
+        light.intensity.y = number;
+        EXPECT_NE(refusal(light).find("bulb"), std::string::npos) << number;
+    }
+    light = pointLight();
+    light.position.z = kNaN;
+    EXPECT_NE(refusal(light), "");
+    for (const Vec3d& direction : {Vec3d(0.0), Vec3d(0.0, 0.0, 2.0), Vec3d(kNaN, 0.0, 1.0)}) {
+        light = pointLight();
+        light.kind = PunctualKind::directional;
+        light.direction = direction;
+        EXPECT_NE(refusal(light), "");
+    }
+    for (const double cosOuter : {0.5, 0.75, kNaN}) {
+        light = pointLight();
+        light.kind = PunctualKind::spot;
+        light.cosInner = 0.5;
+        light.cosOuter = cosOuter;
+        EXPECT_NE(refusal(light), "") << cosOuter;
+    }
+    light.cosOuter = 0.4999;
+    EXPECT_EQ(refusal(light), "");
+}
+
+TEST(Scene, ValidationRefusesBadCameras) {
+    Scene scene = boxScaledBy(1.0);
+    Camera& camera = scene.cameras[0];
+    for (const double yfov : {0.0, -1.0, kPi, kNaN}) {
+        camera.yfov = yfov;
+        EXPECT_THROW(validate(scene), Error) << yfov;
+    }
+    camera.projection = Projection::orthographic;
+    camera.yfov = 0.0; // of no concern to this one
+    EXPECT_NO_THROW(validate(scene));
+    for (const double ymag : {0.0, -1.0, kNaN, kInfinity}) {
+        camera.ymag = ymag;
+        EXPECT_THROW(validate(scene), Error) << ymag;
+    }
+    camera = Camera{};
+    camera.position.x = kInfinity;
+    EXPECT_THROW(validate(scene), Error);
+}
+
+TEST(Scene, ValidationRefusesBadEnvironments) {
+    Scene scene;
+    scene.environment.radiance = {1.0, 0.0, 2.0};
+    EXPECT_NO_THROW(validate(scene)) << "nothing but an environment is a scene";
+    for (const double number : {-1.0, kNaN, kInfinity}) {
+        scene.environment.radiance.z = number;
+        EXPECT_THROW(validate(scene), Error) << number;
+    }
+}
+
+TEST(Scene, SpotsFadeWithTheSquareBetweenTheirCones) {
+    PunctualLight light = pointLight();
+    light.cosInner = 0.75;
+    light.cosOuter = 0.5;
+    for (const double inside : {1.0, 0.8, 0.75}) EXPECT_EQ(spotAttenuation(light, inside), 1.0);
+    for (const double outside : {-1.0, 0.0, 0.49, 0.5}) EXPECT_EQ(spotAttenuation(light, outside), 0.0);
+    EXPECT_EQ(spotAttenuation(light, 0.625), 0.25);
+    EXPECT_EQ(spotAttenuation(light, 0.6875f), 0.5625f);
+}
+
+TEST(Scene, AnEnvironmentEmitsIfAnyChannelDoes) {
+    EXPECT_FALSE(Environment{}.emits());
+    EXPECT_TRUE((Environment{Vec3d(0.0, 0.0, 1e-30), EnvironmentExtent::upperHalf}.emits()));
+    EXPECT_EQ((Environment{Vec3d(1.0), EnvironmentExtent::upperHalf}.solidAngle()), 2.0 * kPi);
+    EXPECT_EQ((Environment{Vec3d(1.0), EnvironmentExtent::sphere}.solidAngle()), 4.0 * kPi);
 }
 
 } // namespace

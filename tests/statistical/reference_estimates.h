@@ -1,0 +1,67 @@
+// Means of films of the CPU reference with their intervals, against what is known in closed form.
+#pragma once
+
+#include "reference/reference.h"
+#include "unit/reference_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace isolux::test {
+
+inline constexpr double kSigmas = 4.5; // one false alarm in 1e5 comparisons
+
+/// All samples of all pixels as one.
+inline PixelStatistics renderTotal(const Scene& scene, RenderSettings settings,
+                                   Precision precision = Precision::doublePrecision) {
+    settings.seed = 20240229;
+    const Film film = renderReference(scene, settings, {precision}, {});
+    EXPECT_TRUE(film.diagnostics.clean());
+    PixelStatistics total;
+    for (const PixelStatistics& pixel : film.pixels) total.merge(pixel);
+    return total;
+}
+
+inline double standardError(const PixelStatistics& total, int channel) {
+    return std::sqrt(total.variance()[channel] / static_cast<double>(total.sampleCount));
+}
+
+/// The mean is `expected` within the interval, which together with the error is within `limit` of it (relative).
+inline void expectRadiance(const PixelStatistics& total, const Vec3d& expected, double limit) {
+    for (int channel = 0; channel < 3; ++channel) {
+        const double error = total.mean[channel] - expected[channel];
+        const double interval = kSigmas * standardError(total, channel) + 1e-6 * expected[channel];
+        EXPECT_LE(std::abs(error), interval) << "channel " << channel;
+        EXPECT_LE(std::abs(error), limit * expected[channel]) << "channel " << channel;
+        EXPECT_LE(interval, 2.0 * limit * expected[channel]) << "too few samples to tell";
+        std::printf("channel %d: %.6f of %.6f, error %+.4f %%, standard error %.4f %%\n", channel, total.mean[channel],
+                    expected[channel], 100.0 * error / expected[channel],
+                    100.0 * standardError(total, channel) / expected[channel]);
+    }
+}
+
+inline RenderSettings squareImage(std::uint32_t size, std::uint32_t samples) {
+    RenderSettings settings;
+    settings.width = settings.height = size;
+    settings.sampleCount = samples;
+    return settings;
+}
+
+/// A white floor and a camera that looks at the world's origin on it from the side.
+inline SceneBuilder floorSeenFromTheSide(const Vec3d& albedo) {
+    SceneBuilder builder;
+    builder.scene.materials[0].baseColor = albedo;
+    builder.mesh(squareMesh(0), scaling({100.0, 100.0, 1.0}));
+    builder.camera({3.0, 0.0, 0.2}, Vec3d(0.0), 1e-6);
+    return builder;
+}
+
+inline RenderSettings onePoint(std::uint32_t samples) {
+    RenderSettings settings = squareImage(4, samples);
+    settings.maxDepth = 1;
+    return settings;
+}
+
+} // namespace isolux::test
