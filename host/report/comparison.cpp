@@ -1,10 +1,8 @@
 #include "report/comparison.h"
 
 #include "core/error.h"
-#include "report/format.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +10,23 @@
 namespace isolux {
 namespace {
 
-using nlohmann::ordered_json;
-
 void requireSameSize(const Image& image, const Image& reference) {
     if (image.width == reference.width && image.height == reference.height) return;
     throwBadInput("compare", fmt::format("the images differ in size: {} x {} and {} x {}", image.width, image.height,
                                          reference.width, reference.height));
+}
+
+Interval withoutInterval(double estimate) {
+    Interval interval;
+    interval.estimate = estimate;
+    return interval;
+}
+
+/// NaN if any is.
+double largestZ(const BlockComparison& comparison) {
+    const double mean = std::abs(comparison.whole.z);
+    const double worst = std::abs(comparison.blocks[comparison.worst].z);
+    return mean <= worst || std::isnan(worst) ? worst : mean;
 }
 
 std::vector<LimitCheck> checkLimits(const ComparisonReport& report, const ComparisonLimits& limits) {
@@ -32,6 +41,14 @@ std::vector<LimitCheck> checkLimits(const ComparisonReport& report, const Compar
         }
     }
     if (limits.maxRelMse) check("relMSE", report.errors.relMse, *limits.maxRelMse);
+    if (limits.maxFlip) {
+        if (!report.flip) throwBadInput("compare", "a limit for FLIP, which was not asked for");
+        check("FLIP", withoutInterval(report.flip->mean), *limits.maxFlip);
+    }
+    if (limits.blocks == BlockCheck::enforced) {
+        if (!report.blocks) throwBadInput("compare", "neither image carries variance: blocks cannot be checked");
+        check("largest |z| of blocks and mean", withoutInterval(largestZ(*report.blocks)), report.blocks->limit);
+    }
     return checks;
 }
 
@@ -39,8 +56,8 @@ std::vector<LimitCheck> checkLimits(const ComparisonReport& report, const Compar
 
 void noteDefects(std::vector<std::string>& notes, const char* role, const PixelDefects& defects) {
     if (!defects.finite()) {
-        notes.push_back(fmt::format("{}: {} pixels hold NaN and {} infinity, so the errors are nan", role, defects.nan,
-                                    defects.infinite));
+        notes.push_back(fmt::format("{}: {} pixels hold NaN and {} infinity, so the errors and FLIP are nan", role,
+                                    defects.nan, defects.infinite));
     }
     if (defects.negative != 0) notes.push_back(fmt::format("{}: {} pixels are negative", role, defects.negative));
 }
@@ -54,7 +71,8 @@ const char* methodNote(BiasMethod method) {
     case BiasMethod::referenceOnly:
         return "the image carries no variance: it is taken as exact, the interval counts the reference's alone";
     case BiasMethod::paired:
-        return "the images share random numbers: the interval is that of the differences of their pixels";
+        return "the images share random numbers: the interval is that of the differences of their pixels, and the z "
+               "values of blocks are too small";
     case BiasMethod::independent: break;
     }
     return nullptr;
@@ -78,52 +96,6 @@ std::vector<std::string> makeNotes(const ComparisonReport& report, const ImageVi
     return notes;
 }
 
-// --- Text ---
-
-std::string limitText(const LimitCheck& check) {
-    return fmt::format("{} {:.4g}: {}", check.name, check.limit,
-                       check.verdict == Verdict::within ? "within" : "EXCEEDED");
-}
-
-std::string meansText(const char* role, const ColorMean& mean) {
-    return fmt::format("{} {} {}", role, formatNumber(mean.luminance), formatColor(mean.rgb));
-}
-
-std::string biasText(const RelativeBias& bias) {
-    std::string text =
-        formatLine("relative bias", fmt::format("{}  luminance, {}", formatPercentInterval(bias.luminance),
-                                                biasMethodName(bias.method)));
-    for (const Quantity quantity : {Quantity::red, Quantity::green, Quantity::blue}) {
-        text += formatLine("", fmt::format("{}  {}", formatPercentInterval(bias.of(quantity)), quantityName(quantity)));
-    }
-    return text;
-}
-
-// --- JSON ---
-
-ordered_json defectsJson(const PixelDefects& defects) {
-    return {{"nan", defects.nan}, {"infinite", defects.infinite}, {"negative", defects.negative}};
-}
-
-ordered_json meanJson(const ColorMean& mean) { return {{"luminance", mean.luminance}, {"rgb", toJson(mean.rgb)}}; }
-
-ordered_json biasJson(const RelativeBias& bias) {
-    ordered_json json{{"method", biasMethodName(bias.method)}, {"confidence", kConfidence}};
-    for (const Quantity quantity : kQuantities) json[quantityName(quantity)] = toJson(bias.of(quantity));
-    return json;
-}
-
-ordered_json limitsJson(const std::vector<LimitCheck>& limits) {
-    ordered_json json = ordered_json::array();
-    for (const LimitCheck& check : limits) {
-        json.push_back({{"name", check.name},
-                        {"limit", check.limit},
-                        {"value", toJson(check.value)},
-                        {"exceeded", check.verdict == Verdict::exceeded}});
-    }
-    return json;
-}
-
 } // namespace
 
 Verdict ComparisonReport::verdict() const {
@@ -139,7 +111,8 @@ Verdict checkLimit(const Interval& value, double limit) {
     return low > limit || high < -limit ? Verdict::exceeded : Verdict::within;
 }
 
-ComparisonReport compareImages(const Image& image, const Image& reference, const ComparisonLimits& limits) {
+ComparisonReport compareImages(const Image& image, const Image& reference, const ComparisonLimits& limits,
+                               const std::optional<FlipOptions>& flipOptions) {
     requireSameSize(image, reference);
     const ImageView imageView(image, "image");
     const ImageView referenceView(reference, "reference");
@@ -148,51 +121,12 @@ ComparisonReport compareImages(const Image& image, const Image& reference, const
     report.height = image.height;
     report.errors = imageErrors(imageView, referenceView, image.width);
     report.bias = relativeBias(image, reference);
+    report.outliers = findOutliers(image, reference);
+    report.blocks = compareBlocks(image, reference);
+    if (flipOptions) report.flip = flip(image, reference, *flipOptions);
     report.notes = makeNotes(report, imageView, referenceView);
     report.limits = checkLimits(report, limits);
     return report;
-}
-
-std::string toText(const ComparisonReport& report) {
-    const ImageErrors& errors = report.errors;
-    std::string text = formatLine(
-        "pixels", fmt::format("{} x {}, {} lit in the reference", report.width, report.height, errors.litPixelCount));
-    text += formatLine("relative RMSE",
-                       fmt::format("{}  RMSE {}, MAE {}, largest {}", formatNumber(errors.relativeRmse),
-                                   formatNumber(errors.rmse), formatNumber(errors.mae), formatNumber(errors.maxAbs)));
-    text += formatLine("MSE",
-                       fmt::format("{}  of which noise {}", formatNumber(errors.mse), formatNumber(errors.noiseMse)));
-    text += formatLine("relMSE", fmt::format("{}  without the worst 0.1 % {}", formatInterval(errors.relMse),
-                                             formatNumber(errors.relMseTrimmed)));
-    text += biasText(report.bias);
-    text += formatLine("mean luminance", fmt::format("{}, {}", meansText("image", errors.imageMean),
-                                                     meansText("reference", errors.referenceMean)));
-    for (const std::string& note : report.notes) text += formatLine("note", note);
-    for (const LimitCheck& check : report.limits) text += formatLine("limit", limitText(check));
-    return text;
-}
-
-ordered_json toJson(const ComparisonReport& report) {
-    const ImageErrors& errors = report.errors;
-    return {
-        {"schema", kReportSchema},
-        {"report", "comparison"},
-        {"width", report.width},
-        {"height", report.height},
-        {"litPixels", errors.litPixelCount},
-        {"mse", errors.mse},
-        {"noiseMse", errors.noiseMse},
-        {"rmse", errors.rmse},
-        {"relativeRmse", errors.relativeRmse},
-        {"relMse", toJson(errors.relMse)},
-        {"relMseTrimmed", errors.relMseTrimmed},
-        {"mae", errors.mae},
-        {"maxAbs", errors.maxAbs},
-        {"relativeBias", biasJson(report.bias)},
-        {"mean", {{"image", meanJson(errors.imageMean)}, {"reference", meanJson(errors.referenceMean)}}},
-        {"defects", {{"image", defectsJson(errors.imageDefects)}, {"reference", defectsJson(errors.referenceDefects)}}},
-        {"notes", report.notes},
-        {"limits", limitsJson(report.limits)}};
 }
 
 } // namespace isolux

@@ -39,11 +39,12 @@ public:
     [[nodiscard]] double varianceOfMean(Quantity quantity) const;
     /// The variance of each channel of a pixel's value, variance / samples. NaN if the image carries none.
     [[nodiscard]] Vec3d pixelVariance(std::size_t pixel) const;
+    /// The same of one quantity; luminance without variance.Y is bounded from above.
+    [[nodiscard]] double pixelVariance(std::size_t pixel, Quantity quantity) const;
 
 private:
     [[nodiscard]] VarianceSource findVariance() const;
     [[nodiscard]] Vec3d layer(std::size_t pixel, const std::array<std::size_t, 3>& channels) const;
-    [[nodiscard]] double pixelVariance(std::size_t pixel, Quantity quantity) const;
 
     const Image& image_;
     std::array<std::size_t, 3> rgb_{};

@@ -1,13 +1,13 @@
 #include "report/metrics.h"
 
+#include "report/blocks.h"
+
 #include <algorithm>
 #include <cassert>
 
 namespace isolux {
 namespace {
 
-constexpr std::uint32_t kBlockSize = 16;
-constexpr double kRelMseOffset = 0.01;
 constexpr std::size_t kTrimmedShare = 1000; ///< one pixel in so many is left out of the trimmed mean
 
 PixelDefects findDefects(const ImageView& image) {
@@ -29,17 +29,6 @@ ColorMean meanColor(const ImageView& image) {
 }
 
 double channelMean(const Vec3d& rgb) { return (rgb.x + rgb.y + rgb.z) / 3.0; }
-
-/// relMSE of each pixel, the mean of its channels.
-std::vector<double> relMsePixels(const ImageView& image, const ImageView& reference) {
-    std::vector<double> result(image.pixelCount());
-    for (std::size_t pixel = 0; pixel < result.size(); ++pixel) {
-        const Vec3d b = reference.color(pixel);
-        const Vec3d difference = image.color(pixel) - b;
-        result[pixel] = channelMean(difference * difference / (b * b + kRelMseOffset));
-    }
-    return result;
-}
 
 double trimmedMean(std::vector<double> values) {
     const std::size_t kept = values.size() - values.size() / kTrimmedShare;
@@ -78,22 +67,6 @@ std::uint64_t countLit(const ImageView& reference) {
     return lit;
 }
 
-/// Blocks of an image: equal in number of columns and rows but for rounding, so that none is a narrow remainder.
-class Blocks {
-public:
-    Blocks(std::size_t width, std::size_t height)
-        : width_(width), height_(height), columns_(std::max<std::size_t>(1, width / kBlockSize)),
-          rows_(std::max<std::size_t>(1, height / kBlockSize)) {}
-
-    [[nodiscard]] std::size_t count() const { return columns_ * rows_; }
-    [[nodiscard]] std::size_t of(std::size_t pixel) const {
-        return pixel / width_ * rows_ / height_ * columns_ + pixel % width_ * columns_ / width_;
-    }
-
-private:
-    std::size_t width_, height_, columns_, rows_;
-};
-
 struct BlockStatistics {
     double count = 0.0;
     double mean = 0.0;
@@ -110,8 +83,18 @@ struct BlockStatistics {
 
 } // namespace
 
+std::vector<double> relMsePixels(const ImageView& image, const ImageView& reference) {
+    std::vector<double> result(image.pixelCount());
+    for (std::size_t pixel = 0; pixel < result.size(); ++pixel) {
+        const Vec3d b = reference.color(pixel);
+        const Vec3d difference = image.color(pixel) - b;
+        result[pixel] = channelMean(difference * difference / (b * b + kRelMseOffset));
+    }
+    return result;
+}
+
 Interval stratifiedMean(std::span<const double> pixels, std::uint32_t width) {
-    const Blocks blocks(width, pixels.size() / width);
+    const BlockGrid blocks(width, pixels.size() / width);
     std::vector<BlockStatistics> statistics(blocks.count());
     for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel) statistics[blocks.of(pixel)].add(pixels[pixel]);
     double variance = 0.0; // of the mean: sum of (n_k / N)^2 s_k^2 / n_k over the strata (Cochran 1977, 5.7)

@@ -6,8 +6,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace isolux {
+
+/// What keeps relative errors of dark pixels finite: they are relative to sqrt(b^2 + 0.01) (Rousselle et al. 2011).
+inline constexpr double kRelMseOffset = 0.01;
 
 /// Pixels with at least one such colour channel.
 struct PixelDefects {
@@ -47,6 +51,9 @@ struct ImageErrors {
 
 /// The views must have as many pixels as each other; `width` tells where rows end.
 [[nodiscard]] ImageErrors imageErrors(const ImageView& image, const ImageView& reference, std::uint32_t width);
+
+/// relMSE of each pixel, the mean of its channels.
+[[nodiscard]] std::vector<double> relMsePixels(const ImageView& image, const ImageView& reference);
 
 /// The mean over an image's pixels of a figure whose noise is independent from pixel to pixel, with the t interval of
 /// that noise: the variance is estimated within blocks of about 16 x 16 pixels (strata), never between them, so that

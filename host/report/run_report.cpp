@@ -3,6 +3,7 @@
 #include "report/format.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -58,6 +59,24 @@ std::string qualityText(const ImageQuality& quality) {
                        formatNumber(quality.relativeRmse));
 }
 
+/// What was asked for besides the scene, a line each; nothing where nothing was.
+std::string requestText(const RunReport& report) {
+    std::string text;
+    if (!report.camera.empty()) text += formatLine("camera", report.camera);
+    if (report.environment) {
+        text += formatLine("environment", fmt::format("{}, {}", formatColor(report.environment->radiance),
+                                                      report.environment->extent));
+    }
+    if (report.timeLimit) text += formatLine("time limit", fmt::format("{} s", formatNumber(*report.timeLimit)));
+    if (!report.layers.empty()) text += formatLine("layers", fmt::format("{}", fmt::join(report.layers, ", ")));
+    return text;
+}
+
+ordered_json environmentJson(const RunReport& report) {
+    if (!report.environment) return {};
+    return {{"radiance", toJson(report.environment->radiance)}, {"extent", report.environment->extent}};
+}
+
 ordered_json timingsJson(const RunTimings& timings) {
     return {{"load", timings.load},       {"build", timings.build},   {"upload", timings.upload},
             {"compile", timings.compile}, {"render", timings.render}, {"device", timings.device.value_or(kUnknown)}};
@@ -101,10 +120,12 @@ double RunReport::raysPerSecond() const { return perSecond(rays, timings.render)
 double RunReport::samplesPerSecond() const { return perSecond(samples, timings.render); }
 
 std::string toText(const RunReport& report) {
-    std::string text = formatLine("scene", sceneText(report)) + formatLine("device", deviceText(report)) +
-                       formatLine("start-up", startUpText(report.timings)) + formatLine("render", renderText(report)) +
-                       formatLine("speed", speedText(report)) + formatLine("image", qualityText(report.quality)) +
+    std::string text = formatLine("scene", sceneText(report)) + requestText(report) +
+                       formatLine("device", deviceText(report)) + formatLine("start-up", startUpText(report.timings)) +
+                       formatLine("render", renderText(report)) + formatLine("speed", speedText(report)) +
+                       formatLine("image", qualityText(report.quality)) +
                        formatLine("diagnostics", formatDiagnostics(report.diagnostics));
+    for (const std::string& explanation : report.explanations) text += formatLine("note", explanation);
     for (const std::string& message : report.validationMessages) text += formatLine("validation", message);
     return text;
 }
@@ -121,6 +142,10 @@ ordered_json toJson(const RunReport& report) {
             {"firstSample", report.firstSample},
             {"seed", report.seed},
             {"maxDepth", report.maxDepth ? ordered_json(*report.maxDepth) : ordered_json()},
+            {"camera", report.camera.empty() ? ordered_json() : ordered_json(report.camera)},
+            {"environment", environmentJson(report)},
+            {"timeLimitSeconds", report.timeLimit ? ordered_json(*report.timeLimit) : ordered_json()},
+            {"layers", report.layers},
             {"seconds", timingsJson(report.timings)},
             {"rays", report.rays},
             {"raysPerSecond", report.raysPerSecond()},
@@ -129,6 +154,7 @@ ordered_json toJson(const RunReport& report) {
             {"dispatches", report.dispatchCount},
             {"longestDispatchSeconds", report.longestDispatch},
             {"diagnostics", toJson(report.diagnostics)},
+            {"explanations", report.explanations},
             {"validationMessages", report.validationMessages},
             {"meanLuminance", toJson(report.quality.meanLuminance)},
             {"relativeRmse", report.quality.relativeRmse}};

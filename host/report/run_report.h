@@ -32,6 +32,12 @@ struct RunTimings {
     [[nodiscard]] double startUp() const { return load + build + upload + compile; }
 };
 
+/// Radiance from infinitely far away, as far as a report tells of it.
+struct EnvironmentSummary {
+    Vec3d radiance{0.0};
+    std::string extent; ///< in words: "sphere", "upper half"
+};
+
 struct RunReport {
     std::string scene;
     std::string sceneHash;
@@ -45,6 +51,10 @@ struct RunReport {
     std::uint64_t firstSample = 0;
     std::uint64_t seed = 0;
     std::optional<std::uint32_t> maxDepth; ///< nothing: no limit
+    std::string camera;                    ///< its name; empty: it has none
+    std::optional<EnvironmentSummary> environment;
+    std::optional<double> timeLimit; ///< seconds after which rendering stops, whatever the samples asked for
+    std::vector<std::string> layers; ///< what the image holds besides radiance: "albedo", ...
     RunTimings timings;
     std::uint64_t rays = 0;
     std::uint64_t samples = 0; ///< of all pixels
@@ -53,6 +63,7 @@ struct RunReport {
     Diagnostics diagnostics;
     std::vector<std::string> validationMessages; ///< of the Vulkan validation layers, if they were asked for
     ImageQuality quality;
+    std::vector<std::string> explanations; ///< of a black or faulty image (explain.h)
 
     [[nodiscard]] double raysPerSecond() const; ///< of `timings.render`; NaN if that is 0
     [[nodiscard]] double samplesPerSecond() const;

@@ -98,6 +98,44 @@ TEST_F(CommandLine, BackendsAgreeAndComparisonsHaveLimits) {
     EXPECT_EQ(nlohmann::json::parse(biased.output).at("schema"), 1);
 }
 
+TEST_F(CommandLine, ComparisonsCheckBlocksAndDrawHeatmaps) {
+    const std::string options = " -q --width 32 --spp 64 ";
+    ASSERT_EQ(run("render " + scene() + options + "-o " + file("a.exr") + " -o " + file("a.png")).exitCode, 0);
+    ASSERT_EQ(run("render " + scene() + options + "--seed 1 -o " + file("b.exr") + " -o " + file("b.png")).exitCode, 0);
+    ASSERT_EQ(run("render " + scene() + options + "--seed 2 --max-depth 1 -o " + file("direct.exr")).exitCode, 0);
+    const std::string pair = file("a.exr") + " " + file("b.exr");
+    const Result agreeing = run("compare --check-blocks " + pair + " --heatmap " + file("flip.png"));
+    EXPECT_EQ(agreeing.exitCode, 0) << agreeing.output;
+    EXPECT_EQ(readImage(file("flip.png")).width, 32u);
+    const Result biased = run("compare --check-blocks " + file("direct.exr") + " " + file("b.exr") +
+                              " --heatmap-of blocks --heatmap " + file("z.exr"));
+    EXPECT_EQ(biased.exitCode, 1) << biased.output;
+    EXPECT_TRUE(readImage(file("z.exr")).channel("error.Y"));
+    const auto range = [&](const std::string& arguments) {
+        return nlohmann::json::parse(run("compare --json " + arguments).output).at("flip").at("range");
+    };
+    const std::string encoded = file("a.png") + " " + file("b.png");
+    EXPECT_EQ(range(pair), "high");
+    EXPECT_EQ(range(encoded), "low");
+    EXPECT_EQ(range(encoded + " --flip hdr"), "high");
+    EXPECT_EQ(run("compare " + encoded + " --max-flip 0").exitCode, 1);
+    EXPECT_EQ(run("compare " + encoded + " --max-flip 1").exitCode, 0);
+}
+
+TEST_F(CommandLine, ComparisonsRefuseWhatCannotBe) {
+    ASSERT_EQ(run("render " + scene() + " -q --width 8 --spp 2 -o " + file("a.png")).exitCode, 0);
+    const std::string pair = "compare " + file("a.png") + " " + file("a.png");
+    EXPECT_EQ(run(pair + " --check-blocks").exitCode, 2) << "no variance";
+    EXPECT_EQ(run(pair + " --heatmap " + file("missing/x.png")).exitCode, 2);
+    EXPECT_EQ(run(pair + " --heatmap " + file("a.png")).exitCode, 2) << "it would replace an input";
+    EXPECT_EQ(run(pair + " --heatmap-of blocks --heatmap " + file("x.png")).exitCode, 2) << "no variance";
+    EXPECT_EQ(run(pair + " --flip none --heatmap " + file("x.png")).exitCode, 2);
+    EXPECT_EQ(run(pair + " --flip none --max-flip 0.1").exitCode, 2);
+    EXPECT_EQ(run(pair + " --flip maybe").exitCode, 2);
+    EXPECT_EQ(fileCount(), 1u);
+    EXPECT_EQ(run(pair + " --flip none").exitCode, 0);
+}
+
 TEST_F(CommandLine, VerifyAgrees) {
     const Result result = run("verify -q " + scene("cornell_spheres") + " --width 48 --spp 8");
     EXPECT_EQ(result.exitCode, 0) << result.output;
@@ -144,6 +182,11 @@ TEST_F(CommandLine, HelpNamesEveryOption) {
     for (const char* option : {"--output", "--spp", "--first-sample", "--width", "--height", "--seed", "--max-depth",
                                "--backend", "--precision", "--device", "--quiet", "--json", "Examples"})
         EXPECT_NE(help.output.find(option), std::string::npos) << option;
+    const Result compareHelp = run("compare --help");
+    EXPECT_EQ(compareHelp.exitCode, 0);
+    for (const char* option : {"--json", "--max-relative-bias", "--max-rel-mse", "--max-flip", "--check-blocks",
+                               "--flip", "--pixels-per-degree", "--heatmap", "--heatmap-of", "Examples"})
+        EXPECT_NE(compareHelp.output.find(option), std::string::npos) << option;
 }
 
 TEST_F(CommandLine, WithoutADriverTheReferenceStillRenders) {

@@ -4,6 +4,7 @@
 #include "report/format.h"
 #include "report/paired.h"
 #include "report/run_report.h"
+#include "report_images.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -14,27 +15,7 @@
 namespace isolux {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-Image makeImage(std::uint32_t width, std::uint32_t height, std::vector<std::string> channels, float fill = 0.0f) {
-    Image image;
-    image.width = width;
-    image.height = height;
-    image.channels = std::move(channels);
-    image.values.assign(image.pixelCount() * image.channels.size(), fill);
-    return image;
-}
-
-Image rgbImage(std::uint32_t width, std::uint32_t height, std::vector<float> values) {
-    Image image = makeImage(width, height, {"R", "G", "B"});
-    image.values = std::move(values);
-    return image;
-}
-
-Image uniformImage(std::uint32_t width, std::uint32_t height, float value) {
-    return makeImage(width, height, {"R", "G", "B"}, value);
-}
+using namespace test;
 
 /// A render of `scene` as a renderer would leave it: every pixel the mean of `samples` exponential variables times the
 /// pixel's true value, its channels fully dependent.
@@ -46,16 +27,6 @@ Image noisyImage(std::mt19937& engine, double scale, int samples) {
         for (int s = 0; s < samples; ++s) film.pixels[i].add(Vec3d(1.0, 0.5, 0.25) * (truth * noise(engine)));
     }
     return imageFromFilm(film, {});
-}
-
-void expectMentions(const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << "\"" << part << "\" is not in: " << text;
-}
-
-/// The number of successes of `trials` is one that a success probability p gives 99.99 % of the time.
-void expectBinomial(int successes, int trials, double p) {
-    const double deviation = std::sqrt(trials * p * (1.0 - p));
-    EXPECT_NEAR(successes, trials * p, normalQuantile(0.99995) * deviation + 0.5);
 }
 
 // --- Statistics ---
