@@ -123,7 +123,11 @@ std::uint32_t AccessorView::readIndex(std::size_t element) const {
 }
 
 std::uint32_t AccessorView::restartIndex() const {
-    return std::numeric_limits<std::uint32_t>::max() >> (8 * (sizeof(std::uint32_t) - bytesOfType(componentType_)));
+    switch (componentType_) {
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 0xFFu;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 0xFFFFu;
+    default: return 0xFFFFFFFFu;
+    }
 }
 
 } // namespace isolux

@@ -4,21 +4,17 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 namespace isolux {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::uint64_t kTriangles = 4;
+constexpr std::uint64_t kTriangles = 4; // the modes before it are points and lines
 constexpr std::uint64_t kByte = 5120;
 constexpr std::uint64_t kUnsignedByte = 5121;
 constexpr std::uint64_t kShort = 5122;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
-/// The modes before triangles.
-constexpr std::array<std::string_view, kTriangles> kModes = {"POINTS", "LINES", "LINE_LOOP", "LINE_STRIP"};
 
 JsonReader accessorOf(const JsonReader& reference, const JsonReader& root) {
     return root.at("accessors").element(reference.index(root.sizeOf("accessors"), "accessors"));
@@ -102,7 +98,7 @@ json verifyPrimitive(const JsonReader& primitive, const JsonReader& root) {
     if (const std::optional<JsonReader> material = primitive.find("material"))
         result["material"] = material->index(root.sizeOf("materials"), "materials");
     const std::uint64_t mode = primitive.find("mode") ? primitive.at("mode").integerBetween(0, 6) : kTriangles;
-    if (mode < kTriangles) primitive.warn(fmt::format("mode {} is not supported; left out", kModes[mode]));
+    if (mode < kTriangles) primitive.warn("points and lines are not supported; left out");
     result["mode"] = mode;
     return result;
 }

