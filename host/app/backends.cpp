@@ -85,6 +85,11 @@ RunReport describeRun(const SceneRun& run, const SceneOptions& options) {
     report.seed = run.settings.seed;
     if (run.settings.maxDepth != kUnlimitedDepth) report.maxDepth = run.settings.maxDepth;
     report.timings.load = run.loadSeconds;
+    report.camera = run.scene.cameras[run.settings.camera].name;
+    const Environment& environment = run.scene.environment;
+    if (environment.emits())
+        report.environment = EnvironmentSummary{
+            environment.radiance, environment.extent == EnvironmentExtent::sphere ? "sphere" : "upper half"};
     return report;
 }
 

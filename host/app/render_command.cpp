@@ -4,8 +4,10 @@
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/scene_options.h"
+#include "app/symptoms.h"
 #include "core/log.h"
 #include "core/platform.h"
+#include "report/format.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -84,6 +86,9 @@ ExitCode run(RenderCommand command) {
         }
     }
     describeFilm(report, film);
+    report.timeLimit = command.seconds;
+    report.layers = layerNames(command.output.layers);
+    report.explanations = explainImage(gatherSymptoms(film, scene));
     const bool stopped = failure.has_value() || interruptRequested();
     const Completion completion = completionOf(film, scene.settings, command.seconds, stopped);
     if (completion == Completion::interrupted && film.maxSampleCount() == 0) {
@@ -91,8 +96,11 @@ ExitCode run(RenderCommand command) {
         return ExitCode::interrupted;
     }
     if (failure) fmt::print(stderr, "isolux: error: {}\n", failure->what());
-    if (command.statistics || !command.scene.quiet) fmt::print("{}", toText(report));
-    if (!command.json.empty()) writeText(command.json, toJson(report).dump(2) + "\n");
+    if (command.statistics || !command.scene.quiet)
+        fmt::print("{}", toText(report));
+    else
+        for (const std::string& explanation : report.explanations) spdlog::warn("{}", explanation);
+    if (!command.json.empty()) writeText(command.json, jsonText(toJson(report)));
     writeOutputs(command.output, film, scene, report, completion);
     if (failure) return failure->code();
     if (completion == Completion::interrupted) return ExitCode::interrupted;

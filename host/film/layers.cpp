@@ -183,6 +183,13 @@ LayerSet parseLayers(std::string_view list) {
     return layers;
 }
 
+std::vector<std::string> layerNames(const LayerSet& layers) {
+    std::vector<std::string> names;
+    for (const NamedLayer& named : kLayers)
+        if (layers.contains(named.layer)) names.emplace_back(named.name);
+    return names;
+}
+
 bool needsAovs(const LayerSet& layers) {
     return std::any_of(kLayers.begin(), kLayers.end(), [&](const NamedLayer& named) {
         return named.layer != Layer::variance && named.layer != Layer::samples && layers.contains(named.layer);

@@ -35,6 +35,9 @@ private:
 /// Reads layers separated by commas, or `all` or `none`. Throws Error (bad input) that names an unknown word.
 [[nodiscard]] LayerSet parseLayers(std::string_view list);
 
+/// The words that `parseLayers` reads.
+[[nodiscard]] std::vector<std::string> layerNames(const LayerSet& layers);
+
 /// Whether one of the layers comes from Film::aovs.
 [[nodiscard]] bool needsAovs(const LayerSet& layers);
 

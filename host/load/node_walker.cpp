@@ -68,8 +68,8 @@ Camera toCamera(const tinygltf::Camera& source) {
 
 /// What of a light does not depend on where it stands.
 PunctualLight toLight(const tinygltf::Light& source) {
-    // 16 times the rounding of a cosine in single precision: less could make the two equal on a device.
-    constexpr double kNarrowestEdge = 0x1p-20;
+    // Cosines of cones that are narrow, or hardly apart, may be equal when rounded; the edge between them has a width.
+    constexpr double kNarrowestEdge = 0x1p-52;
     PunctualLight light;
     light.name = source.name;
     light.kind = source.type == "point"  ? PunctualKind::point

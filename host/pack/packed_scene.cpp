@@ -209,7 +209,8 @@ private:
                           "--backend reference");
         return {word(position, asFloat(shared::kNone)),
                 word(Vec3f(light.direction), 0.0f),
-                {static_cast<float>(light.cosInner), static_cast<float>(light.cosOuter), 0.0f, 0.0f},
+                {static_cast<float>(1.0 - light.cosOuter), static_cast<float>(1.0 / (light.cosInner - light.cosOuter)),
+                 0.0f, 0.0f},
                 word(sent, asFloat(kind))};
     }
 

@@ -7,6 +7,8 @@
 namespace isolux {
 namespace {
 
+constexpr double kLargest = 1e30; // coordinates
+
 void validateMaterial(const Material& material) {
     const std::string where = fmt::format("material '{}'", material.name);
     if (!isFinite(material.baseColor) || !isFinite(material.emission)) throwBadInput(where, "a factor is not finite");
@@ -42,9 +44,11 @@ void validatePunctualLight(const PunctualLight& light) {
     const std::string where = fmt::format("light '{}'", light.name);
     const bool finite = isFinite(light.position) && isFinite(light.direction) && isFinite(light.intensity);
     if (!finite) throwBadInput(where, "a number is not finite");
+    if (maxComponent(glm::abs(light.position)) > kLargest) throwBadInput(where, "its position is beyond 1e30");
     if (glm::any(glm::lessThan(light.intensity, Vec3d(0.0)))) throwBadInput(where, "intensity must not be negative");
     if (!(std::abs(glm::length(light.direction) - 1.0) < 1e-6)) throwBadInput(where, "its direction has no length");
-    if (light.kind == PunctualKind::spot && !(light.cosOuter < light.cosInner))
+    const bool cones = light.cosOuter >= -1.0 && light.cosOuter < light.cosInner && light.cosInner <= 1.0;
+    if (light.kind == PunctualKind::spot && !cones)
         throwBadInput(where, "its inner cone must be narrower than its outer one");
 }
 
@@ -56,7 +60,6 @@ void validateEnvironment(const Environment& environment) {
 
 /// What both renderers may compute with: squares and areas stay far inside double's range.
 void validateBounds(const Scene& scene) {
-    constexpr double kLargest = 1e30;
     constexpr double kSmallest = 1e-30;
     const Box3d bounds = worldBounds(scene);
     if (primitiveCount(scene) == 0) return;

@@ -147,7 +147,8 @@ float sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
     uint index = min(chosen, render.depthLights.w - 1u);
     LightSample light = sampleLight(readLight(render.tableOffsets.y, index), origin,
                                     vec2(unitReal(random.z), unitReal(random.w)));
-    float cosine = light.pdf > 0.0 ? lambertianCosine(surface.facing, surface.shading, light.direction) : 0.0;
+    bool lights = light.pdf > 0.0 && maxComponent(baseColor) > 0.0;
+    float cosine = lights ? lambertianCosine(surface.facing, surface.shading, light.direction) : 0.0;
     if (cosine > 0.0) {
         float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, lambertianPdf(cosine));
         path.shadowRadiance = path.throughput * lambertianEval(baseColor) * light.emission * (cosine / light.pdf * weight);

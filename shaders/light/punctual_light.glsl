@@ -5,9 +5,11 @@
 #include "core/math.glsl"
 #include "light/light_sample.glsl"
 
-// The share of a spot's intensity at an angle to its axis: the square of a ramp in the cosine between the cones.
-float spotAttenuation(LightRecord light, float cosine) {
-    float t = clamp((cosine - light.p2Area.y) / (light.p2Area.x - light.p2Area.y), 0.0, 1.0);
+// The share of a spot's intensity in a direction: the square of a ramp in the cosine between the cones. By 1 - cosine,
+// half the squared distance of two unit vectors, since the cosines of narrow cones are all 1 in single precision.
+float spotAttenuation(LightRecord light, vec3 fromLight) {
+    vec3 apart = fromLight - light.p1Choice.xyz;
+    float t = clamp((light.p2Area.x - 0.5 * dot(apart, apart)) * light.p2Area.y, 0.0, 1.0);
     return t * t;
 }
 
@@ -20,7 +22,7 @@ LightSample samplePunctualLight(LightRecord light, vec3 from) {
     result.way = directional ? -light.p1Choice.xyz : toLight;
     result.limit = directional ? kFarthest : 1.0;
     result.direction = directional ? -light.p1Choice.xyz : toLight * inversesqrt(distanceSquared);
-    float share = kind == kLightSpot ? spotAttenuation(light, -dot(result.direction, light.p1Choice.xyz)) : 1.0;
+    float share = kind == kLightSpot ? spotAttenuation(light, -result.direction) : 1.0;
     result.emission = light.emissionKind.xyz * (directional ? 1.0 : share / distanceSquared);
     result.pdf = share > 0.0 && (directional || distanceSquared > 0.0) ? light.p1Choice.w : 0.0;
     result.delta = true;

@@ -41,7 +41,7 @@ ISOLUX_CHECK_SIZE(MaterialRecord, 32);
 // One light, complete, so that sampling it touches nothing else. What the words hold besides:
 //   triangle      its corners and area
 //   sphere        p0 = centre, p1.x = radius
-//   point, spot   p0 = position, p1 = direction, p2.xy = cosines of the inner and outer cone
+//   point, spot   p0 = position, p1 = direction, p2.x = 1 - cosOuter, p2.y = 1 / (cosInner - cosOuter)
 //   directional   p1 = direction in which the light travels
 //   environment   p2.x = 1 - y of the lowest direction that emits
 struct LightRecord {
