@@ -101,19 +101,20 @@ template <typename Real>
     return t > 0 ? std::optional<Real>(t) : std::nullopt;
 }
 
-template <typename Real> struct Interval {
+template <typename Real> struct RaySegment {
     Real lower;
     Real upper;
 };
 
 /// The part of the ray inside a box grown by the rounding error of anything in it: never too short, and never longer
 /// for a box than for one around it. Slabs (Kay and Kajiya 1986), the far ends widened (Ize 2013).
-template <typename Real> [[nodiscard]] std::optional<Interval<Real>> clipToBox(const Ray<Real>& ray, const Box3f& box) {
+template <typename Real>
+[[nodiscard]] std::optional<RaySegment<Real>> clipToBox(const Ray<Real>& ray, const Box3f& box) {
     const Vec3<Real> lower = Vec3<Real>(box.lower) - ray.origin;
     const Vec3<Real> upper = Vec3<Real>(box.upper) - ray.origin;
     // A vertex in the box is projected with an error of less than gamma(8) of its distance along each axis.
     const Real slack = roundingBound<Real>(16) * maxComponent(glm::max(glm::abs(lower), glm::abs(upper)));
-    Interval<Real> inside{0, ray.tMax};
+    RaySegment<Real> inside{0, ray.tMax};
     for (int axis = 0; axis < 3; ++axis) {
         const Real low = lower[axis] - slack;
         const Real high = upper[axis] + slack;
