@@ -60,16 +60,17 @@ protected:
 
 TEST_F(LostDevice, KeepsTheSamplesThatWereFinished) {
     // Dispatches get longer as the render goes on, so three quarters of them lie in a later batch than the first.
-    const std::string after = std::to_string(dispatchesNeeded() * 3 / 4);
-    for (const std::string call : {"submit", "wait"}) {
+    const std::string after = " ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesNeeded() * 3 / 4);
+    const auto loseIn = [&](const std::string& call) {
         const std::string image = file(call + ".exr");
-        const ProgramResult result =
-            runFaulty(render(image), "ISOLUX_FAULT_IN=" + call + " ISOLUX_FAULT_AFTER=" + after);
+        const ProgramResult result = runFaulty(render(image), "ISOLUX_FAULT_IN=" + call + after);
         expectTryAgain(result, "VK_ERROR_DEVICE_LOST");
         EXPECT_EQ(occurrences(result.output, image), 1u) << "what was saved: " << result.output;
         EXPECT_NE(result.output.find("samples"), std::string::npos) << result.output;
         expectSamplesFinished(image);
-    }
+    };
+    loseIn("submit");
+    loseIn("wait");
 }
 
 TEST_F(LostDevice, WithoutASampleThereIsNoFile) {
