@@ -1,0 +1,106 @@
+// A device that is lost or out of memory, which tests/support/fault_layer plays: exit code 75, one error, and whatever
+// samples were finished.
+#include "film/image.h"
+#include "support/program.h"
+#include "support/scenes.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace isolux::test {
+namespace {
+
+constexpr int kTryAgain = 75;
+constexpr std::uint32_t kSamples = 64; // four batches: some are finished when the device is lost, and some are not
+
+class LostDevice : public ProgramTest {
+protected:
+    /// Runs the program on a device with these faults.
+    [[nodiscard]] static ProgramResult runFaulty(const std::string& arguments, const std::string& faults) {
+        return runProgram(arguments, "VK_LAYER_PATH='" + std::string(ISOLUX_BINARY_DIR) +
+                                         "/tests/support/fault_layer' VK_INSTANCE_LAYERS=VK_LAYER_ISOLUX_fault " +
+                                         faults);
+    }
+
+    [[nodiscard]] static std::string render(const std::string& output, std::uint64_t samples = kSamples) {
+        return "render '" + projectScene("cornell_box").string() + "' --width 32 --spp " + std::to_string(samples) +
+               " -o '" + output + "'";
+    }
+
+    /// Exit code 75 and one line of error that names the cause.
+    static void expectTryAgain(const ProgramResult& result, const std::string& cause) {
+        EXPECT_EQ(result.exitCode, kTryAgain) << result.output;
+        EXPECT_EQ(occurrences(result.output, "error:"), 1u) << result.output;
+        EXPECT_EQ(occurrences(result.output, cause), 1u) << result.output;
+    }
+
+    /// The dispatches of a render that goes well, under the layer, which must not matter.
+    [[nodiscard]] std::uint64_t dispatchesNeeded() const {
+        const ProgramResult result =
+            runFaulty(render(file("whole.exr")) + " --json '" + file("whole.json") + "'", "ISOLUX_FAULT_AFTER=1000000");
+        EXPECT_EQ(result.exitCode, 0) << result.output;
+        std::ifstream stream(file("whole.json"));
+        return nlohmann::json::parse(stream).at("dispatches");
+    }
+
+    /// `image` is, to the last bit, what a render of as many samples as it says leaves.
+    void expectSamplesFinished(const std::string& image) const {
+        const Image kept = readImage(image);
+        const auto samples = metadataUnsigned(kept.metadata, "isolux/sampleCount");
+        ASSERT_TRUE(samples);
+        EXPECT_GE(*samples, 1u);
+        EXPECT_LT(*samples, kSamples);
+        ASSERT_EQ(runProgram(render(file("same.exr"), *samples) + " -q").exitCode, 0);
+        const Image same = readImage(file("same.exr"));
+        EXPECT_EQ(kept.channels, same.channels);
+        EXPECT_TRUE(kept.values == same.values);
+    }
+};
+
+TEST_F(LostDevice, KeepsTheSamplesThatWereFinished) {
+    // Dispatches get longer as the render goes on, so three quarters of them lie in a later batch than the first.
+    const std::string after = " ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesNeeded() * 3 / 4);
+    const auto loseIn = [&](const std::string& call) {
+        const std::string image = file(call + ".exr");
+        const ProgramResult result = runFaulty(render(image), "ISOLUX_FAULT_IN=" + call + after);
+        expectTryAgain(result, "VK_ERROR_DEVICE_LOST");
+        EXPECT_EQ(occurrences(result.output, image), 1u) << "what was saved: " << result.output;
+        EXPECT_NE(result.output.find("samples"), std::string::npos) << result.output;
+        expectSamplesFinished(image);
+    };
+    loseIn("submit");
+    loseIn("wait");
+}
+
+TEST_F(LostDevice, WithoutASampleThereIsNoFile) {
+    // Of the submissions, the first warms up and the second takes the first samples.
+    for (const char* faults :
+         {"ISOLUX_FAULT_AFTER=0", "ISOLUX_FAULT_AFTER=1", "ISOLUX_FAULT_AFTER=1 ISOLUX_FAULT_IN=wait"})
+        expectTryAgain(runFaulty(render(file("a.exr")), faults), "VK_ERROR_DEVICE_LOST");
+    EXPECT_EQ(fileCount(), 0u);
+}
+
+TEST_F(LostDevice, VerifyAsksToTryAgain) {
+    const std::string verify = "verify '" + projectScene("cornell_box").string() + "' --width 16 --spp 4";
+    expectTryAgain(runFaulty(verify, "ISOLUX_FAULT_AFTER=2"), "VK_ERROR_DEVICE_LOST");
+}
+
+/// Memory runs out at the first allocation, the second, and so on to the last.
+TEST_F(LostDevice, OutOfMemoryLeavesNoFile) {
+    constexpr int kMostAllocations = 100;
+    int failed = 0;
+    for (;; ++failed) {
+        ASSERT_LT(failed, kMostAllocations);
+        const ProgramResult result =
+            runFaulty(render(file("a.exr"), 1), "ISOLUX_FAULT_MEMORY_AFTER=" + std::to_string(failed));
+        if (result.exitCode == 0) break;
+        expectTryAgain(result, "VK_ERROR_OUT_OF_DEVICE_MEMORY");
+        EXPECT_EQ(fileCount(), 0u);
+    }
+    RecordProperty("allocations", failed);
+    EXPECT_GE(failed, 5) << "the layer was not asked for the buffers of scene, paths, stacks, film and parameters";
+}
+
+} // namespace
+} // namespace isolux::test
