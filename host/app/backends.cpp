@@ -60,8 +60,10 @@ void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const
     report.deviceName =
         options.precision == Precision::doublePrecision ? "CPU, double precision" : "CPU, single precision";
     const ScopedTimer timer(report.timings.render);
-    const ReferenceOptions reference{options.precision, Intersector::bvh, PathSignatures::off, options.aovs,
-                                     options.seconds};
+    ReferenceOptions reference;
+    reference.precision = options.precision;
+    reference.aovs = options.aovs;
+    reference.seconds = options.seconds;
     film = renderReference(run.scene, run.settings, reference, bar.callback());
 }
 

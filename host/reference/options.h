@@ -14,11 +14,17 @@ enum class Precision { doublePrecision, singlePrecision };
 /// bit.
 enum class Intersector { bvh, bruteForce };
 
+/// Which normal tells the two sides of a surface apart. `geometric` is the written convention. `shading` is the rule of
+/// renderers that ask the shading normal alone, such as Mitsuba: rays may then pass through the surface they leave. It
+/// is there to tell how much of a difference from such a renderer is due to its rule.
+enum class SideRule { geometric, shading };
+
 struct ReferenceOptions {
     Precision precision = Precision::doublePrecision;
     Intersector intersector = Intersector::bvh;
     PathSignatures signatures = PathSignatures::off;
     Aovs aovs = Aovs::off;
+    SideRule sides = SideRule::geometric;
     std::optional<double> seconds = std::nullopt; ///< stop after about this time, at least one sample a pixel
 };
 

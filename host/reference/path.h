@@ -24,9 +24,11 @@ template <typename Real> struct PathResult {
 /// Follows paths through a scene. Keeps references; safe to use from many threads.
 template <typename Real> class PathTracer {
 public:
-    PathTracer(const Scene& scene, const World<Real>& world, const RenderSettings& settings, Intersector intersector)
-        : scene_(scene), world_(world), settings_(settings), camera_(scene.cameras[settings.camera], settings),
-          caster_(world, intersector), lights_(scene, world) {}
+    PathTracer(const Scene& scene, const World<Real>& world, const RenderSettings& settings,
+               const ReferenceOptions& options)
+        : scene_(scene), world_(world), settings_(settings), sides_(options.sides),
+          camera_(scene.cameras[settings.camera], settings), caster_(world, options.intersector),
+          lights_(scene, world) {}
 
     [[nodiscard]] PathResult<Real> trace(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
         const Stream stream{settings_.seed, x, y, sample};
@@ -77,7 +79,15 @@ private:
         ++path.result.rays;
         const std::optional<Hit<Real>> hit = caster_.nearest(path.ray);
         path.result.record(hit ? hit->primitive : kNoPrimitive);
-        return hit ? std::optional(surfaceAt(world_, path.ray, *hit)) : std::nullopt;
+        if (!hit) return std::nullopt;
+        Surface<Real> surface = surfaceAt(world_, path.ray, *hit);
+        if (sides_ == SideRule::shading && glm::dot(surface.ns, surface.wo) < 0) surface.ns = -surface.ns;
+        return surface;
+    }
+
+    /// Whether scattering reaches a direction as far as the geometric normal is asked.
+    [[nodiscard]] bool onOurSide(const Surface<Real>& surface, const Vec3<Real>& wi) const {
+        return sides_ == SideRule::shading || glm::dot(wi, surface.facing) > 0;
     }
 
     void noteFirstHit(PathResult<Real>& result, const Surface<Real>& surface) const {
@@ -107,16 +117,17 @@ private:
 
     /// f of the written conventions: Lambertian, without the cosine. The geometric normal decides the side.
     [[nodiscard]] Vec3<Real> evaluate(const Surface<Real>& surface, const Vec3<Real>& wi) const {
-        const bool reflects = glm::dot(wi, surface.facing) > 0 && glm::dot(wi, surface.ns) > 0;
+        const bool reflects = onOurSide(surface, wi) && glm::dot(wi, surface.ns) > 0;
         return reflects ? Vec3<Real>(materialAt(surface).baseColor) / static_cast<Real>(kPi) : Vec3<Real>(0);
     }
 
     void addDirectLight(Path& path, const Surface<Real>& surface, const PhiloxBlock& words) const {
         constexpr std::uint32_t kBlocked = 0, kReached = 1, kNoRay = 2;
-        const std::optional<LightSample<Real>> light = lights_.sample(surface, words);
+        std::optional<LightSample<Real>> light = lights_.sample(surface, words);
         const Vec3<Real> f = light ? evaluate(surface, light->wi) : Vec3<Real>(0);
         if (f == Vec3<Real>(0)) return path.result.record(kNoRay);
         ++path.result.rays;
+        light->shadowRay.origin = surface.originTowards(light->wi);
         if (caster_.visibility(light->shadowRay, light->primitive) == Visibility::blocked)
             return path.result.record(kBlocked);
         path.result.record(kReached);
@@ -129,10 +140,10 @@ private:
     [[nodiscard]] Fate scatter(Path& path, const Surface<Real>& surface, const PhiloxBlock& words) const {
         const Vec3<Real> local = sampleCosineHemisphere(unitReal<Real>(words[0]), unitReal<Real>(words[1]));
         const Vec3<Real> wi = glm::normalize(frameAbout(surface.ns).toWorld(local));
-        path.ray = {surface.origin, wi};
+        path.ray = {surface.originTowards(wi), wi};
         path.pdf = glm::dot(wi, surface.ns) / static_cast<Real>(kPi);
         path.throughput *= Vec3<Real>(materialAt(surface).baseColor);
-        const bool alive = glm::dot(wi, surface.facing) > 0 && path.throughput != Vec3<Real>(0);
+        const bool alive = onOurSide(surface, wi) && path.throughput != Vec3<Real>(0);
         return alive ? Fate::goesOn : Fate::ends;
     }
 
@@ -150,6 +161,7 @@ private:
     const Scene& scene_;
     const World<Real>& world_;
     RenderSettings settings_;
+    SideRule sides_;
     CameraRays<Real> camera_;
     RayCaster<Real> caster_;
     Lights<Real> lights_;

@@ -43,7 +43,7 @@ template <typename Real> class Renderer {
 public:
     Renderer(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options,
              const PixelRegion& region)
-        : world_(flatten<Real>(scene)), tracer_(scene, world_, settings, options.intersector), settings_(settings),
+        : world_(flatten<Real>(scene)), tracer_(scene, world_, settings, options), settings_(settings),
           options_(options), region_(region), film_(region.width, region.height) {
         if (options.aovs == Aovs::on) film_.keepAovs();
     }

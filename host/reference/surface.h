@@ -18,8 +18,12 @@ template <typename Real> struct Surface {
     Vec3<Real> ns;       ///< unit shading normal on the side of wo
     Vec3<Real> position; ///< the hit point, as rounded
     Vec3<Real> origin;   ///< where rays leave from: off the surface, on the side of wo
+    Vec3<Real> behind;   ///< the same on the other side, where only SideRule::shading lets rays go
     Real t = 0;          ///< distance along the ray that found it
 
+    [[nodiscard]] Vec3<Real> originTowards(const Vec3<Real>& wi) const {
+        return glm::dot(wi, facing) >= 0 ? origin : behind;
+    }
     [[nodiscard]] Side side() const { return facing == ng ? Side::front : Side::back; }
 };
 
@@ -87,6 +91,7 @@ template <typename Real>
     if (glm::dot(surface.ns, surface.facing) < 0) surface.ns = -surface.ns;
     surface.position = point.position;
     surface.origin = offsetPoint(point.position, point.error, surface.facing);
+    surface.behind = offsetPoint(point.position, point.error, -surface.facing);
     return surface;
 }
 
