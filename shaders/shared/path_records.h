@@ -46,10 +46,10 @@ struct RenderParameters {
     vec4 cameraForward;     // unit
     vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it
     vec4 environmentLimits; // x: it emits from directions with y above this alone; y, z, w unused
-    uvec4 imageSeed;    // width, height, seed low, seed high
-    uvec4 depthLights;  // maximum depth, roulette start, bits of the alias table, number of lights
-    uvec4 tableOffsets; // first word of materials, lights, light bins in the tables buffer; w unused
-    uvec4 sceneCounts;  // x: nodes, z: materials; y, w unused
+    uvec4 imageSeed;        // width, height, seed low, seed high
+    uvec4 depthLights;      // maximum depth, roulette start, bits of the alias table, number of lights
+    uvec4 tableOffsets;     // first word of materials, lights, light bins in the tables buffer; w unused
+    uvec4 sceneCounts;      // x: nodes, z: materials; y, w unused
 };
 ISOLUX_CHECK_SIZE(RenderParameters, 160);
 
