@@ -58,6 +58,13 @@ TEST_F(Lights, AllTogether) {
     expectAgreement(scene, imageSettings(96, 96, 16));
 }
 
+/// As a file brings them: sun, lamp, spot and sky, in perspective and as an orthographic plan.
+TEST_F(Lights, Courtyard) {
+    const Scene scene = loadScene(projectScene("courtyard"));
+    RenderSettings settings = imageSettings(96, 72, 16);
+    for (settings.camera = 0; settings.camera < 2; ++settings.camera) expectAgreement(scene, settings);
+}
+
 /// Nothing but environment: every pixel shows it, in either projection.
 TEST_F(Lights, EnvironmentWithoutAnySurface) {
     Scene scene;

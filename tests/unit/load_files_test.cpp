@@ -32,10 +32,14 @@ TEST_P(ProjectScene, LoadsWithTheExpectedFigures) {
     EXPECT_EQ(scene.spheres.size(), expected["spheres"].get<std::size_t>());
     EXPECT_EQ(scene.cameras.size(), expected["cameras"].get<std::size_t>());
     EXPECT_EQ(lights, expected["lights"].get<std::size_t>());
-    EXPECT_EQ(scene.cameras.at(0).aspectRatio, 1.0);
+    EXPECT_EQ(scene.cameras.at(0).aspectRatio, expected.value("aspectRatio", 1.0));
+    EXPECT_EQ(scene.punctualLights.size(), expected.value("punctualLights", std::size_t{0}));
+    for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(scene.environment.radiance[c], expected.value("sky", std::vector<double>(3, 0.0))[c]);
 }
 
-INSTANTIATE_TEST_SUITE_P(Load, ProjectScene, ::testing::Values("cornell_box", "cornell_spheres", "furnace"),
+INSTANTIATE_TEST_SUITE_P(Load, ProjectScene,
+                         ::testing::Values("cornell_box", "cornell_spheres", "courtyard", "furnace"),
                          [](const auto& instance) { return instance.param; });
 
 /// World-space corners of every triangle of the instance named so.
