@@ -173,8 +173,8 @@ class BvhAgainstBruteForce : public Intersection {
 protected:
     void expectSameHits(const std::filesystem::path& file, double totalTests) {
         const PackedScene scene = packScene(loadScene(file));
-        const auto count =
-            static_cast<std::size_t>(std::min(1e6, totalTests / static_cast<double>(scene.primitives.size())));
+        const double rayCount = std::min(1e6, totalTests / static_cast<double>(scene.primitives.size()));
+        const auto count = static_cast<std::size_t>(std::max(100.0, rayCount * workShare()));
         const Rays rays = RayMaker(scene).make(count);
         const Disagreement result =
             disagreement(trace(scene, rays, Method::bvh), trace(scene, rays, Method::bruteForce));
@@ -212,7 +212,8 @@ TEST_F(Intersection, ClosedMeshesAreWatertight) {
     const PackedScene scene = packScene(loadScene(blobScene()));
     RayMaker maker(scene);
     Rays rays;
-    for (int i = 0; i < 1'000'000; ++i) {
+    const int count = static_cast<int>(1e6 * workShare());
+    for (int i = 0; i < count; ++i) {
         const Vec3f origin = maker.point(0.3f);
         rays.push_back(maker.towards(origin, i % 2 == 0 ? maker.vertex() : maker.edgePoint()));
     }

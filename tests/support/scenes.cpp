@@ -26,6 +26,8 @@ bool inContinuousIntegration() { return std::getenv("CI") != nullptr; }
 
 bool longTests() { return std::getenv("ISOLUX_LONG_TESTS") != nullptr; }
 
+double workShare() { return std::getenv("ISOLUX_REPEATED_DRIVER") != nullptr && !longTests() ? 0.1 : 1.0; }
+
 Scene furnaceScene(const Vec3d& albedo, const Vec3d& emission) {
     Scene scene;
     scene.name = "furnace";

@@ -21,6 +21,10 @@ namespace isolux::test {
 /// Whether `tools/test --long` asked for the long versions.
 [[nodiscard]] bool longTests();
 
+/// The share of a test's work to do: all of it on the first driver and with `tools/test --long`, a tenth on drivers
+/// that repeat what another has done (ISOLUX_REPEATED_DRIVER), of which one is thirty times slower.
+[[nodiscard]] double workShare();
+
 /// A closed box of edge 2 about the origin, seen from inside: radiance is emission / (1 - albedo) everywhere.
 [[nodiscard]] Scene furnaceScene(const Vec3d& albedo, const Vec3d& emission);
 
