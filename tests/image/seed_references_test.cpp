@@ -29,6 +29,8 @@ enum class Sides { sameRule, otherRule };
 struct Case {
     const char* name;
     Sides sides;
+
+    friend std::ostream& operator<<(std::ostream& stream, const Case& tested) { return stream << tested.name; }
 };
 
 constexpr std::array kCases{Case{"CBbunny", Sides::sameRule},        Case{"CBempty", Sides::sameRule},
