@@ -61,18 +61,37 @@ ObjectNames namesOf(const Scene& scene) {
     return names;
 }
 
-/// One file. Throws Error if an interrupted render finds a better one under both of its names.
+std::string_view whatStopped(Completion completion) {
+    return completion == Completion::failed ? "stopped by the error" : "interrupted";
+}
+
+/// Says what a render that is not whole left. After a failure even to those who want to read errors alone: it may have
+/// gone to another name than the one they gave.
+void tellWhatIsKept(const std::filesystem::path& path, const Film& film, Completion completion) {
+    const std::uint64_t least = film.minSampleCount();
+    const std::uint64_t most = film.maxSampleCount();
+    const std::string count = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+    const std::string text = fmt::format("{}: {} sample{} a pixel {} in {}", whatStopped(completion), count,
+                                         most == 1 ? "" : "s", most == 1 ? "is" : "are", path.string());
+    if (completion == Completion::failed)
+        fmt::print(stderr, "isolux: {}\n", text); // below its error, of which it is a part
+    else
+        spdlog::warn("{}", text);
+}
+
+/// One file. Throws Error if a render that is not whole finds a better one under both of its names.
 void writeOutput(const std::filesystem::path& path, const Image& image, const DisplayTransform& display,
                  const Film& film, Completion completion) {
-    std::filesystem::path target = path;
-    if (completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount())) target = partialName(path);
+    if (completion == Completion::whole) {
+        writeImage(path, image, display);
+        return;
+    }
+    const std::filesystem::path target = mayHoldMore(path, film.minSampleCount()) ? partialName(path) : path;
     if (target != path && mayHoldMore(target, film.minSampleCount()))
-        throwFailure(path.string(),
-                     fmt::format("interrupted, and {} may hold more samples: nothing was written", target.string()));
+        throwFailure(path.string(), fmt::format("{}, and {} may hold more samples: nothing was written",
+                                                whatStopped(completion), target.string()));
     writeImage(target, image, display);
-    if (completion == Completion::interrupted)
-        spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(), film.maxSampleCount(),
-                     target.string());
+    tellWhatIsKept(target, film, completion);
 }
 
 } // namespace

@@ -63,10 +63,25 @@ void prepare(RenderCommand& command) {
 
 /// A render is whole when all its samples are taken, or, within a time limit, as many of each pixel.
 Completion completionOf(const Film& film, const RenderSettings& settings, const std::optional<double>& limit,
-                        bool stopped) {
-    const bool whole = limit ? film.minSampleCount() == film.maxSampleCount() && !stopped
+                        Completion ending) {
+    const bool whole = limit ? film.minSampleCount() == film.maxSampleCount() && ending == Completion::whole
                              : film.minSampleCount() == settings.sampleCount;
-    return whole ? Completion::whole : Completion::interrupted;
+    if (whole) return Completion::whole;
+    return ending == Completion::failed ? Completion::failed : Completion::interrupted;
+}
+
+/// Renders as far as it goes. What was finished before a device is lost or memory runs out is worth keeping: that error
+/// is returned. It is thrown if there is no sample yet.
+std::optional<Error> renderWhatCanBe(Film& film, RunReport& report, const SceneRun& scene,
+                                     const RenderCommand& command) {
+    ProgressBar bar("rendering", progressDisplay(command.scene));
+    try {
+        renderFilm(film, report, scene, backendOptions(command), bar);
+    } catch (const Error& error) {
+        if (film.maxSampleCount() == 0) throw;
+        return error;
+    }
+    return std::nullopt;
 }
 
 ExitCode run(RenderCommand command) {
@@ -74,23 +89,15 @@ ExitCode run(RenderCommand command) {
     const SceneRun scene = openScene(command.scene, kDefaultWidth);
     Film film(scene.settings.width, scene.settings.height);
     RunReport report = describeRun(scene, command.scene);
-    std::optional<Error> failure;
-    {
-        ProgressBar bar("rendering", progressDisplay(command.scene));
-        try {
-            renderFilm(film, report, scene, backendOptions(command), bar);
-        } catch (const Error& error) {
-            // What was finished before a device is lost or memory runs out is worth keeping.
-            if (film.maxSampleCount() == 0) throw;
-            failure = error;
-        }
-    }
+    const std::optional<Error> failure = renderWhatCanBe(film, report, scene, command);
     describeFilm(report, film);
     report.timeLimit = command.seconds;
     report.layers = layerNames(command.output.layers);
     report.explanations = explainImage(gatherSymptoms(film, scene));
-    const bool stopped = failure.has_value() || interruptRequested();
-    const Completion completion = completionOf(film, scene.settings, command.seconds, stopped);
+    const Completion ending = failure                ? Completion::failed
+                              : interruptRequested() ? Completion::interrupted
+                                                     : Completion::whole;
+    const Completion completion = completionOf(film, scene.settings, command.seconds, ending);
     if (completion == Completion::interrupted && film.maxSampleCount() == 0) {
         spdlog::warn("interrupted before the first sample; nothing was written");
         return ExitCode::interrupted;

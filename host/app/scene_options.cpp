@@ -68,9 +68,10 @@ std::uint32_t findCamera(const Scene& scene, const std::string& text) {
 
 void checkSettings(const RenderSettings& settings) {
     if (settings.width == 0 || settings.height == 0 || settings.width > kMaxEdge || settings.height > kMaxEdge)
-        throwBadInput("--width, --height", fmt::format("must lie between 1 and {}", kMaxEdge));
+        throwBadInput("image size", fmt::format("{} x {}: edges must lie between 1 and {} pixels", settings.width,
+                                                settings.height, kMaxEdge));
     if (std::uint64_t{settings.width} * settings.height > kMaxPixels)
-        throwBadInput("--width, --height",
+        throwBadInput("image size",
                       fmt::format("{} x {} pixels are more than {}", settings.width, settings.height, kMaxPixels));
     if (settings.sampleCount == 0) throwBadInput("--spp", "must be at least 1");
     if (settings.firstSample > std::numeric_limits<std::uint32_t>::max() - settings.sampleCount)
