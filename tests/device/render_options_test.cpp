@@ -38,15 +38,6 @@ protected:
         for (const std::string& part : parts) EXPECT_TRUE(contains(result.output, part)) << result.output;
         EXPECT_FALSE(std::filesystem::exists(file("bad.exr")));
     }
-    /// A render that goes well and says this of its black image.
-    void expectBlack(const std::string& explanation) const {
-        const ProgramResult result = render("--size 12x8 --spp 4 --json '" + file("a.json") + "'");
-        EXPECT_EQ(result.exitCode, 0) << result.output;
-        EXPECT_EQ(occurrences(result.output, "the image is black: "), 1u) << result.output;
-        EXPECT_TRUE(contains(result.output, explanation)) << result.output;
-        std::ifstream stream(file("a.json"));
-        EXPECT_TRUE(contains(json::parse(stream).at("explanations").dump(), explanation));
-    }
 };
 
 std::vector<std::string> linesOf(const std::string& text) {
@@ -82,11 +73,8 @@ TEST_F(RenderOptionsTest, SizeIsBothEdges) {
 }
 
 TEST_F(RenderOptionsTest, MalformedSizesAreRefused) {
-    for (const char* size : {"40", "x30", "40x", "99999999x1", "40x30x20", "4ax30", "-4x3", "40 x 30", ""})
-        if (std::string(size).empty())
-            EXPECT_EQ(render("--size ''").exitCode, 0); // as if it were not given
-        else
-            expectBadInput("'--size=" + std::string(size) + "'", {"--size", size});
+    for (const char* size : {"40", "x30", "40x", "99999999x1", "40x30x20", "4ax30", "-4x3", "40 x 30"})
+        expectBadInput("'--size=" + std::string(size) + "'", {"--size", size});
     expectBadInput("--size 0x5", {"0 x 5"});
     expectBadInput("--size 65537x1", {"65537 x 1"});
     expectBadInput("--size 65536x65536", {"65536 x 65536"});
@@ -139,7 +127,7 @@ TEST_F(RenderOptionsTest, TimeAloneDecidesHowManySamples) {
     const json report = json::parse(stream);
     EXPECT_EQ(report.at("samplesPerPixel"), most);
     EXPECT_EQ(report.at("timeLimitSeconds"), 1.0);
-    // Rendering is two orders of magnitude from never ending: a slow machine may take longer than asked for.
+    // A busy machine may take longer than a second; a limit that nobody looks at takes days for 2^32 samples.
     EXPECT_LT(report.at("seconds").at("render"), 30.0);
 }
 
@@ -249,12 +237,19 @@ TEST_F(RenderOptionsTest, StatisticsArePrintedEvenIfQuiet) {
 // --- Samples ---
 
 TEST_F(RenderOptionsTest, DispatchLengthChangesNoBit) {
-    const std::string options = std::string("-q --size 32x24 --spp 40 --aov all") + kLit;
+    const std::string options =
+        std::string("-q --size 64x48 --spp 40 --aov all --json '") + file("a.json") + "'" + kLit;
+    const auto dispatches = [&] {
+        std::ifstream stream(file("a.json"));
+        return json::parse(stream).at("dispatches").get<int>();
+    };
     const Image usual = image(options);
-    const Image short_ = image(options + "--dispatch-ms 1");
-    EXPECT_EQ(usual.channels, short_.channels);
+    const int few = dispatches();
+    const Image cut = image(options + "--dispatch-ms 1");
+    EXPECT_GE(dispatches(), few) << "more, unless the device is done in a millisecond anyway";
+    EXPECT_EQ(usual.channels, cut.channels);
     // Not ==, to which the NaN of an unknown variance would differ from itself.
-    EXPECT_EQ(std::memcmp(usual.values.data(), short_.values.data(), usual.values.size() * sizeof(float)), 0);
+    EXPECT_EQ(std::memcmp(usual.values.data(), cut.values.data(), usual.values.size() * sizeof(float)), 0);
     EXPECT_EQ(render("--dispatch-ms 0").exitCode, 2);
 }
 
@@ -274,34 +269,6 @@ TEST_F(RenderOptionsTest, HalvesAverageToTheWhole) {
             ASSERT_NEAR(average, expected, std::ldexp(average + expected, -24) * (1.0 + 1e-6)) << pixel;
         }
     }
-}
-
-// --- Black images ---
-
-TEST_F(RenderOptionsTest, ALitCubeIsNotBlack) {
-    json document = cubeDocument();
-    addPunctualLight(document, "point");
-    writeScene(document);
-    EXPECT_GT(centre(image(kSmall), "G"), 0.0f);
-    EXPECT_FALSE(contains(render("--size 12x8 --spp 4").output, "black"));
-}
-
-TEST_F(RenderOptionsTest, BlackWithoutALight) { expectBlack("the scene has no light"); }
-
-TEST_F(RenderOptionsTest, BlackWhereTheCameraLooksAway) {
-    json document = cubeDocument();
-    addPunctualLight(document, "point");
-    document["nodes"][1]["rotation"] = {0, 1, 0, 0}; // by half a turn about y
-    writeScene(document);
-    expectBlack("the camera looks away from everything");
-}
-
-TEST_F(RenderOptionsTest, BlackInsideASolid) {
-    json document = cubeDocument();
-    addPunctualLight(document, "point");
-    document["nodes"][1]["translation"] = {0, 0, 0};
-    writeScene(document);
-    expectBlack("the camera lies inside a closed object");
 }
 
 } // namespace
