@@ -74,6 +74,7 @@ SceneRun openScene(const SceneOptions& options, std::uint32_t defaultWidth) {
     const ScopedTimer timer(run.loadSeconds);
     run.scene = loadScene(options);
     run.settings = settingsFor(run.scene, options, defaultWidth);
+    run.environmentGiven = !options.environment.empty();
     return run;
 }
 

@@ -25,6 +25,7 @@ struct BackendOptions {
 struct SceneRun {
     Scene scene;
     RenderSettings settings;
+    bool environmentGiven = false; ///< by the options, instead of the file's
     double loadSeconds = 0.0;
 };
 

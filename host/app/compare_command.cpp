@@ -1,5 +1,6 @@
 // `isolux compare`: an image against a reference, with limits that a test can rely on and a map of where they differ.
 #include "app/commands.h"
+#include "app/validators.h"
 #include "film/image.h"
 #include "report/comparison.h"
 #include "report/format.h"
@@ -93,10 +94,13 @@ ExitCode run(const CompareCommand& command) {
 void addLimits(CLI::App& sub, CompareCommand& command) {
     sub.add_option("--max-relative-bias", command.limits.maxRelativeBias,
                    "Largest relative difference of the means, as a fraction")
+        ->check(finiteNumber())
         ->check(CLI::NonNegativeNumber);
     sub.add_option("--max-rel-mse", command.limits.maxRelMse, "Largest relative mean squared error")
+        ->check(finiteNumber())
         ->check(CLI::NonNegativeNumber);
     sub.add_option("--max-flip", command.limits.maxFlip, "Largest mean FLIP, from 0 to 1")
+        ->check(finiteNumber())
         ->check(CLI::NonNegativeNumber);
     sub.add_flag("--check-blocks", command.checkBlocks,
                  "Fail if a block of 16 x 16 pixels or the mean differs by more than noise explains (1 % over all)");
@@ -110,6 +114,7 @@ void addFlip(CLI::App& sub, CompareCommand& command) {
         ->capture_default_str();
     sub.add_option("--pixels-per-degree", command.pixelsPerDegree,
                    "For FLIP: of visual angle; by default a display of 3840 pixels and 0.7 m, seen from 0.7 m")
+        ->check(finiteNumber())
         ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str();
 }

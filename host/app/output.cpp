@@ -14,6 +14,17 @@
 namespace isolux {
 namespace {
 
+/// The options that decide the image, beside the seed and the samples that have entries of their own.
+std::string optionsText(const SceneRun& run, const RunReport& report) {
+    const Vec3d& sky = run.scene.environment.radiance;
+    std::string text = fmt::format("--backend {} --size {}x{} --camera {}", report.backend, report.width, report.height,
+                                   run.settings.camera);
+    if (run.environmentGiven) text += fmt::format(" --environment {},{},{}", sky.x, sky.y, sky.z);
+    if (report.maxDepth) text += fmt::format(" --max-depth {}", *report.maxDepth);
+    if (report.timeLimit) text += fmt::format(" --time {}", *report.timeLimit);
+    return text;
+}
+
 Metadata metadataOf(const SceneRun& run, const RunReport& report) {
     const Camera& camera = run.scene.cameras[run.settings.camera];
     const double aspect = static_cast<double>(run.settings.width) / static_cast<double>(run.settings.height);
@@ -28,9 +39,7 @@ Metadata metadataOf(const SceneRun& run, const RunReport& report) {
             {"isolux/sceneHash", report.sceneHash},
             {"isolux/device", report.deviceName},
             {"isolux/driver", fmt::format("{} {}", report.driverName, report.driverVersion)},
-            {"isolux/options",
-             fmt::format("--backend {} --width {} --height {}{}", report.backend, report.width, report.height,
-                         report.maxDepth ? fmt::format(" --max-depth {}", *report.maxDepth) : "")}};
+            {"isolux/options", optionsText(run, report)}};
 }
 
 /// Whether the file at `path` may hold more samples than `samples`: it says so, or says nothing of samples.
@@ -61,18 +70,37 @@ ObjectNames namesOf(const Scene& scene) {
     return names;
 }
 
-/// One file. Throws Error if an interrupted render finds a better one under both of its names.
+std::string_view whatStopped(Completion completion) {
+    return completion == Completion::failed ? "stopped by the error" : "interrupted";
+}
+
+/// Says what a render that is not whole left. After a failure even to those who want to read errors alone: it may have
+/// gone to another name than the one they gave.
+void tellWhatIsKept(const std::filesystem::path& path, const Film& film, Completion completion) {
+    const std::uint64_t least = film.minSampleCount();
+    const std::uint64_t most = film.maxSampleCount();
+    const std::string count = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+    const std::string text = fmt::format("{}: {} sample{} a pixel {} in {}", whatStopped(completion), count,
+                                         most == 1 ? "" : "s", most == 1 ? "is" : "are", path.string());
+    if (completion == Completion::failed)
+        fmt::print(stderr, "isolux: {}\n", text); // below its error, of which it is a part
+    else
+        spdlog::warn("{}", text);
+}
+
+/// One file. Throws Error if a render that is not whole finds a better one under both of its names.
 void writeOutput(const std::filesystem::path& path, const Image& image, const DisplayTransform& display,
                  const Film& film, Completion completion) {
-    std::filesystem::path target = path;
-    if (completion == Completion::interrupted && mayHoldMore(path, film.minSampleCount())) target = partialName(path);
+    if (completion == Completion::whole) {
+        writeImage(path, image, display);
+        return;
+    }
+    const std::filesystem::path target = mayHoldMore(path, film.minSampleCount()) ? partialName(path) : path;
     if (target != path && mayHoldMore(target, film.minSampleCount()))
-        throwFailure(path.string(),
-                     fmt::format("interrupted, and {} may hold more samples: nothing was written", target.string()));
+        throwFailure(path.string(), fmt::format("{}, and {} may hold more samples: nothing was written",
+                                                whatStopped(completion), target.string()));
     writeImage(target, image, display);
-    if (completion == Completion::interrupted)
-        spdlog::warn("interrupted: {} to {} samples a pixel are in {}", film.minSampleCount(), film.maxSampleCount(),
-                     target.string());
+    tellWhatIsKept(target, film, completion);
 }
 
 } // namespace
@@ -92,6 +120,13 @@ void writeOutputs(const OutputRequest& request, const Film& film, const SceneRun
         }
     }
     if (first) throw Error(*first);
+}
+
+void checkTextPath(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) throwBadInput(path, "is a folder");
+    if (!std::filesystem::is_directory(folder, ignored)) throwBadInput(path, "its folder does not exist");
 }
 
 void writeText(const std::string& path, const std::string& text) {

@@ -11,7 +11,7 @@
 
 namespace isolux {
 
-enum class Completion { whole, interrupted };
+enum class Completion { whole, interrupted, failed };
 
 /// What to write, and where.
 struct OutputRequest {
@@ -20,11 +20,14 @@ struct OutputRequest {
     DisplayTransform display; ///< of PNG files
 };
 
-/// Writes the film to every path. An interrupted render replaces a file only if that holds no more samples; otherwise
-/// it goes beside it, with ".partial" in its name. One file that cannot be written does not keep the others from being
-/// so; the first error is thrown at the end.
+/// Writes the film to every path. A render that is not whole replaces a file only if that holds no more samples;
+/// otherwise it goes beside it, with ".partial" in its name. One file that cannot be written does not keep the others
+/// from being so; the first error is thrown at the end.
 void writeOutputs(const OutputRequest& request, const Film& film, const SceneRun& run, const RunReport& report,
                   Completion completion);
+
+/// Throws Error (bad input) early if `path` names a folder or its own folder does not exist.
+void checkTextPath(const std::string& path);
 
 /// Writes a text file to a temporary name, flushed and renamed. Throws Error.
 void writeText(const std::string& path, const std::string& text);

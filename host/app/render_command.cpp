@@ -5,6 +5,7 @@
 #include "app/progress_bar.h"
 #include "app/scene_options.h"
 #include "app/symptoms.h"
+#include "app/validators.h"
 #include "core/log.h"
 #include "core/platform.h"
 #include "report/format.h"
@@ -52,8 +53,9 @@ void prepare(RenderCommand& command) {
     bool anyExr = false;
     for (const std::string& path : command.output.paths) {
         checkImagePath(path);
-        anyExr = anyExr || std::filesystem::path(path).extension() == ".exr";
+        anyExr = anyExr || holdsLayers(path);
     }
+    if (!command.json.empty()) checkTextPath(command.json);
     if (needsAovs(command.output.layers) && !anyExr)
         spdlog::warn("--aov: layers go into .exr files, and none is written");
     // With a time limit alone there are as many samples as it allows.
@@ -63,10 +65,38 @@ void prepare(RenderCommand& command) {
 
 /// A render is whole when all its samples are taken, or, within a time limit, as many of each pixel.
 Completion completionOf(const Film& film, const RenderSettings& settings, const std::optional<double>& limit,
-                        bool stopped) {
-    const bool whole = limit ? film.minSampleCount() == film.maxSampleCount() && !stopped
+                        Completion ending) {
+    const bool whole = limit ? film.minSampleCount() == film.maxSampleCount() && ending == Completion::whole
                              : film.minSampleCount() == settings.sampleCount;
-    return whole ? Completion::whole : Completion::interrupted;
+    if (whole) return Completion::whole;
+    return ending == Completion::failed ? Completion::failed : Completion::interrupted;
+}
+
+/// Renders as far as it goes. What was finished before a device is lost or memory runs out is worth keeping: that error
+/// is returned. It is thrown if there is no sample yet.
+std::optional<Error> renderWhatCanBe(Film& film, RunReport& report, const SceneRun& scene,
+                                     const RenderCommand& command) {
+    ProgressBar bar("rendering", progressDisplay(command.scene));
+    try {
+        renderFilm(film, report, scene, backendOptions(command), bar);
+    } catch (const Error& error) {
+        if (film.maxSampleCount() == 0) throw;
+        return error;
+    }
+    return std::nullopt;
+}
+
+/// Images first, then the report; the first error, if a file could not be written.
+std::optional<Error> writeAll(const RenderCommand& command, const Film& film, const SceneRun& scene,
+                              const RunReport& report, Completion completion) {
+    std::optional<Error> first;
+    try {
+        writeOutputs(command.output, film, scene, report, completion);
+    } catch (const Error& error) {
+        first = error;
+    }
+    if (!command.json.empty()) writeText(command.json, jsonText(toJson(report)));
+    return first;
 }
 
 ExitCode run(RenderCommand command) {
@@ -74,23 +104,15 @@ ExitCode run(RenderCommand command) {
     const SceneRun scene = openScene(command.scene, kDefaultWidth);
     Film film(scene.settings.width, scene.settings.height);
     RunReport report = describeRun(scene, command.scene);
-    std::optional<Error> failure;
-    {
-        ProgressBar bar("rendering", progressDisplay(command.scene));
-        try {
-            renderFilm(film, report, scene, backendOptions(command), bar);
-        } catch (const Error& error) {
-            // What was finished before a device is lost or memory runs out is worth keeping.
-            if (film.maxSampleCount() == 0) throw;
-            failure = error;
-        }
-    }
+    const std::optional<Error> failure = renderWhatCanBe(film, report, scene, command);
     describeFilm(report, film);
     report.timeLimit = command.seconds;
     report.layers = layerNames(command.output.layers);
     report.explanations = explainImage(gatherSymptoms(film, scene));
-    const bool stopped = failure.has_value() || interruptRequested();
-    const Completion completion = completionOf(film, scene.settings, command.seconds, stopped);
+    const Completion ending = failure                ? Completion::failed
+                              : interruptRequested() ? Completion::interrupted
+                                                     : Completion::whole;
+    const Completion completion = completionOf(film, scene.settings, command.seconds, ending);
     if (completion == Completion::interrupted && film.maxSampleCount() == 0) {
         spdlog::warn("interrupted before the first sample; nothing was written");
         return ExitCode::interrupted;
@@ -100,8 +122,10 @@ ExitCode run(RenderCommand command) {
         fmt::print("{}", toText(report));
     else
         for (const std::string& explanation : report.explanations) spdlog::warn("{}", explanation);
-    if (!command.json.empty()) writeText(command.json, jsonText(toJson(report)));
-    writeOutputs(command.output, film, scene, report, completion);
+    const std::optional<Error> unwritten = writeAll(command, film, scene, report, completion);
+    // Whoever runs this again asks why the render stopped before why a file could not be replaced.
+    if (unwritten && completion == Completion::whole) throw Error(*unwritten);
+    if (unwritten) fmt::print(stderr, "isolux: {}\n", unwritten->what());
     if (failure) return failure->code();
     if (completion == Completion::interrupted) return ExitCode::interrupted;
     return film.diagnostics.clean() && report.validationMessages.empty() ? ExitCode::success : ExitCode::failure;
@@ -117,6 +141,7 @@ void addOutputOptions(CLI::App& sub, RenderCommand& command) {
     sub.add_option("--tonemap", command.tonemap, "Of .png files: none, reinhard, aces, agx or pbr-neutral")
         ->capture_default_str();
     sub.add_option("--exposure", command.output.display.exposure, "Of .png files, in stops")
+        ->check(finiteNumber())
         ->check(CLI::Range(-100.0, 100.0))
         ->capture_default_str();
     sub.add_option("--json", command.json, "Also write the report to this file");
@@ -131,6 +156,7 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
     addSceneOptions(*sub, command->scene);
     sub->add_option("--time", command->seconds,
                     "Stop after about so many seconds of rendering; without --spp that alone decides")
+        ->check(finiteNumber())
         ->check(CLI::PositiveNumber);
     addOutputOptions(*sub, *command);
     sub->add_option("--backend", command->backend, "What renders")

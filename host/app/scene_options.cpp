@@ -1,4 +1,5 @@
 #include "app/scene_options.h"
+#include "app/validators.h"
 
 #include "core/error.h"
 #include "core/log.h"
@@ -68,10 +69,13 @@ std::uint32_t findCamera(const Scene& scene, const std::string& text) {
 
 void checkSettings(const RenderSettings& settings) {
     if (settings.width == 0 || settings.height == 0 || settings.width > kMaxEdge || settings.height > kMaxEdge)
-        throwBadInput("--width, --height", fmt::format("must lie between 1 and {}", kMaxEdge));
+        throwBadInput("image size", fmt::format("{} x {}: edges must lie between 1 and {} pixels", settings.width,
+                                                settings.height, kMaxEdge));
     if (std::uint64_t{settings.width} * settings.height > kMaxPixels)
-        throwBadInput("--width, --height",
+        throwBadInput("image size",
                       fmt::format("{} x {} pixels are more than {}", settings.width, settings.height, kMaxPixels));
+    if (settings.firstSample == std::numeric_limits<std::uint32_t>::max())
+        throwBadInput("--first-sample", "sample indices must stay below 2^32 - 1");
     if (settings.sampleCount == 0) throwBadInput("--spp", "must be at least 1");
     if (settings.firstSample > std::numeric_limits<std::uint32_t>::max() - settings.sampleCount)
         throwBadInput("--first-sample", "sample indices must stay below 2^32");
@@ -95,6 +99,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
                        "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
     command.add_option("--device", options.device, "Vulkan device by number or part of its name (default: the best)");
     command.add_option("--dispatch-ms", options.dispatchMilliseconds, "How long one dispatch should last, about")
+        ->check(finiteNumber())
         ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str();
     command.add_option("--progress", options.progress, "Bar or lines, JSON lines for programs, or nothing")

@@ -4,6 +4,7 @@
 #include "reference/surface.h"
 #include "scene/lights.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isolux {
@@ -56,7 +57,9 @@ ImageSymptoms gatherSymptoms(const Film& film, const SceneRun& run) {
     if (run.settings.maxDepth != kUnlimitedDepth) symptoms.maxDepth = run.settings.maxDepth;
     if (symptoms.meanLuminance != 0.0) return symptoms;
     const Camera& camera = run.scene.cameras[run.settings.camera];
-    symptoms.lightCount = buildLightTable(run.scene).lights.size();
+    // Those that light nothing here count too: that there is nothing to light is another symptom.
+    const std::size_t distant = run.scene.punctualLights.size() + (run.scene.environment.emits() ? 1 : 0);
+    symptoms.lightCount = std::max(buildLightTable(run.scene).lights.size(), distant);
     symptoms.sceneSide = sideOf(run.scene, camera);
     symptoms.cameraPlace = placeOf(run.scene, camera);
     return symptoms;

@@ -4,6 +4,7 @@
 #include "app/divergence.h"
 #include "app/progress_bar.h"
 #include "app/scene_options.h"
+#include "app/validators.h"
 #include "core/log.h"
 #include "reference/reference.h"
 #include "report/comparison.h"
@@ -136,10 +137,14 @@ void addVerifyCommand(CLI::App& app, ExitCode& result) {
     command->scene.samples = 16;
     addSceneOptions(*sub, command->scene);
     sub->add_option("--tolerance", command->tolerance, "Relative difference that rounding may cause in a pixel")
+        ->check(finiteNumber())
         ->capture_default_str();
     sub->add_option("--min-agreement", command->minAgreement, "Share of lit pixels that must be within it")
+        ->check(finiteNumber())
         ->capture_default_str();
-    sub->add_option("--max-relative-bias", command->maxRelativeBias, "Of the mean luminance")->capture_default_str();
+    sub->add_option("--max-relative-bias", command->maxRelativeBias, "Of the mean luminance")
+        ->check(finiteNumber())
+        ->capture_default_str();
     sub->add_flag("--json", command->json, "Print JSON");
     sub->footer(
         "Both backends take the same random numbers, so pixels agree to rounding unless rounding turned a path to\n"

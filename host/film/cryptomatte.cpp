@@ -1,5 +1,7 @@
 #include "film/cryptomatte.h"
 
+#include "core/log.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,9 +85,21 @@ std::vector<Cryptomatte::Rank> Cryptomatte::ranks(const PixelAovs& pixel, std::u
 
 std::size_t Cryptomatte::layerCount(const Film& film) const {
     std::size_t most = 1;
-    for (const PixelAovs& pixel : film.aovs) {
-        if (pixel.objects.size() > most) most = std::max(most, ranks(pixel, 1).size());
+    std::size_t crowded = 0;
+    double leftOut = 0.0;
+    for (std::size_t i = 0; i < film.aovs.size(); ++i) {
+        if (film.aovs[i].objects.size() <= most) continue;
+        const std::vector<Rank> shown = ranks(film.aovs[i], film.pixels[i].sampleCount);
+        most = std::max(most, std::min(shown.size(), 2 * kMostLayers));
+        if (shown.size() <= 2 * kMostLayers) continue;
+        ++crowded;
+        double coverage = 0.0;
+        for (std::size_t rank = 2 * kMostLayers; rank < shown.size(); ++rank) coverage += shown[rank].coverage;
+        leftOut = std::max(leftOut, coverage);
     }
+    if (crowded > 0)
+        spdlog::warn("{}: {} pixels show more than {} things; of one {:.3g} % of the coverage is left out", type_,
+                     crowded, 2 * kMostLayers, 100.0 * leftOut);
     return (most + 1) / 2;
 }
 

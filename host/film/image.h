@@ -64,6 +64,9 @@ void writeImage(const std::filesystem::path& path, const Image& image, const Dis
 /// cannot be written to.
 void checkImagePath(const std::filesystem::path& path);
 
+/// Whether files of this name keep every channel: OpenEXR does, PNG and HDR show R G B alone.
+[[nodiscard]] bool holdsLayers(const std::filesystem::path& path);
+
 /// Reads any image OpenImageIO knows, as float: integer formats are decoded from sRGB to linear, with associated alpha;
 /// others are taken as they are. EXR channels may come in another order than they were written in. Throws Error (bad
 /// input).

@@ -269,6 +269,8 @@ void writeImage(const fs::path& path, const Image& image, const DisplayTransform
     replaceFile(temporary.path(), path);
 }
 
+bool holdsLayers(const fs::path& path) { return formatOf(path) == Format::openExr; }
+
 void checkImagePath(const fs::path& path) {
     requireFormat(path);
     std::error_code error;

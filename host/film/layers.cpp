@@ -100,6 +100,7 @@ ChannelGroup cryptomatteChannels(const Film& film, const Cryptomatte& matte) {
     return {matte.channels(matte.layerCount(film)), [&film, matte](std::size_t pixel, std::span<float> values) {
                 std::size_t next = 0;
                 for (const Cryptomatte::Rank& rank : matte.ranks(film.aovs[pixel], film.pixels[pixel].sampleCount)) {
+                    if (next == values.size()) break; // layerCount has said so
                     values[next++] = rank.id;
                     values[next++] = rank.coverage;
                 }

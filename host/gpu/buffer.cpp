@@ -23,6 +23,13 @@ std::uint32_t chooseMemoryType(const Device& device, std::uint32_t typeBits, Buf
     throwFailure("Buffer", "unknown access");
 }
 
+/// The call with what it asked for, which tells a user what to make smaller.
+std::string sizedCall(const char* call, VkDeviceSize size) {
+    constexpr VkDeviceSize kMebibyte = VkDeviceSize{1} << 20;
+    return size < kMebibyte ? fmt::format("{} (a buffer of {} bytes)", call, size)
+                            : fmt::format("{} (a buffer of {} MiB)", call, size / kMebibyte);
+}
+
 } // namespace
 
 Buffer::Buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage, BufferAccess access)
@@ -32,7 +39,7 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage
     info.usage = usage;
     info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
     VkBuffer buffer = VK_NULL_HANDLE;
-    check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), "vkCreateBuffer");
+    check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), sizedCall("vkCreateBuffer", size_));
     buffer_ = {device.handle(), buffer, vkDestroyBuffer};
 
     VkMemoryRequirements requirements;
@@ -46,7 +53,8 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage
                     fmt::format("a buffer of {} MiB is more than the {} MiB it can allocate at once",
                                 requirements.size >> 20, device.maxAllocation(allocation.memoryTypeIndex) >> 20));
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    check(vkAllocateMemory(device.handle(), &allocation, nullptr, &memory), "vkAllocateMemory");
+    check(vkAllocateMemory(device.handle(), &allocation, nullptr, &memory),
+          sizedCall("vkAllocateMemory", requirements.size));
     memory_ = {device.handle(), memory, vkFreeMemory};
     check(vkBindBufferMemory(device.handle(), buffer, memory, 0), "vkBindBufferMemory");
 

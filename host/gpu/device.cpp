@@ -159,6 +159,7 @@ DeviceDescription describe(VkPhysicalDevice device, std::uint32_t index) {
     vkGetPhysicalDeviceProperties2(device, &properties);
     description.driverName = driver.driverName;
     description.driverVersion = driver.driverInfo;
+    if (description.driverVersion.empty()) description.driverVersion = versionText(basic.driverVersion);
     description.limits = limitsOf(device);
     return description;
 }

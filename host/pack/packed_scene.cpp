@@ -203,7 +203,9 @@ private:
         const double unit = directional ? 1.0 : packed_.space.scale * packed_.space.scale;
         const Vec3f sent(light.intensity * unit);
         const Vec3f position(directional ? Vec3d(0.0) : packed_.space.fromWorld(light.position));
-        if (!isFinite(sent) || !isFinite(position) || (luminance(sent) == 0.0f && luminance(light.intensity) > 0.0))
+        constexpr float kFarthestLight = 1e18f; // its square must stay in single precision's range
+        if (!isFinite(sent) || !(maxComponent(glm::abs(position)) < kFarthestLight) ||
+            (luminance(sent) == 0.0f && luminance(light.intensity) > 0.0))
             throwBadInput(fmt::format("light '{}'", light.name),
                           "single precision cannot hold its intensity or position in a scene of this size; use "
                           "--backend reference");

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "reference/light_sample.h"
+#include "reference/rounding.h"
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace isolux {
@@ -28,7 +30,10 @@ template <typename Real>
     const Real distance = glm::length(way);
     if (!(distance > 0)) return std::nullopt;
     sample.wi = way / distance;
-    sample.shadowRay = {origin, sample.wi, distance};
+    // A surface in which the light lies does not block it: the ray ends short by the rounding of both points and of the
+    // distance to such a surface, for incidences down to a few degrees.
+    const Real size = maxComponent(glm::abs(Vec3<Real>(light.position))) + maxComponent(glm::abs(origin));
+    sample.shadowRay = {origin, sample.wi, std::max(distance - roundingBound<Real>(64) * size, Real(0))};
     const bool spot = light.kind == PunctualKind::spot;
     const Real attenuation = spot ? spotAttenuation(light, -glm::dot(axis, sample.wi)) : Real(1);
     // Not a number where `Real` cannot tell the inner cone from the outer one.

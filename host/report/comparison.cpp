@@ -105,7 +105,7 @@ Verdict ComparisonReport::verdict() const {
 }
 
 Verdict checkLimit(const Interval& value, double limit) {
-    if (!std::isfinite(value.estimate)) return Verdict::exceeded;
+    if (!std::isfinite(value.estimate) || std::isnan(limit)) return Verdict::exceeded;
     const double low = value.known() ? value.low : value.estimate;
     const double high = value.known() ? value.high : value.estimate;
     return low > limit || high < -limit ? Verdict::exceeded : Verdict::within;

@@ -18,9 +18,13 @@ LightSample samplePunctualLight(LightRecord light, vec3 from) {
     vec3 toLight = light.p0Primitive.xyz - from;
     float distanceSquared = dot(toLight, toLight);
     bool directional = kind == kLightDirectional;
+    // A surface in which the light lies does not block it: the ray ends short by the rounding of both points and of the
+    // distance to such a surface, for incidences down to a few degrees.
+    float slack = errorBound(64.0) * (maxComponent(abs(light.p0Primitive.xyz)) + maxComponent(abs(from)));
+    float shortened = max(1.0 - slack * inversesqrt(distanceSquared), 1e-30);
     LightSample result;
     result.way = directional ? -light.p1Choice.xyz : toLight;
-    result.limit = directional ? kFarthest : 1.0;
+    result.limit = directional ? kFarthest : shortened;
     result.direction = directional ? -light.p1Choice.xyz : toLight * inversesqrt(distanceSquared);
     float share = kind == kLightSpot ? spotAttenuation(light, -result.direction) : 1.0;
     result.emission = light.emissionKind.xyz * (directional ? 1.0 : share / distanceSquared);

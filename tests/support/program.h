@@ -19,9 +19,10 @@ struct ProgramResult {
     std::string output; ///< standard output and error together
 };
 
-/// The built program with these arguments (a shell's words); `prefix` may set its environment.
+/// The built program with these arguments (a shell's words, which may redirect a stream); `prefix` may set its
+/// environment.
 [[nodiscard]] inline ProgramResult runProgram(const std::string& arguments, const std::string& prefix = "") {
-    const std::string command = prefix + " '" + ISOLUX_BINARY_DIR + "/isolux' " + arguments + " 2>&1";
+    const std::string command = "{ " + prefix + " '" + ISOLUX_BINARY_DIR + "/isolux' " + arguments + "; } 2>&1";
     std::FILE* pipe = ::popen(command.c_str(), "r");
     ProgramResult result;
     std::array<char, 4096> buffer;
@@ -37,6 +38,10 @@ struct ProgramResult {
     std::size_t count = 0;
     for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
     return count;
+}
+
+[[nodiscard]] inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
 }
 
 /// A test with a folder of its own.

@@ -163,12 +163,12 @@ TEST_F(ImageFile, ManyChannelsAreWrittenWholeOrNotAtAll) {
     for (std::uint32_t object = 0; object < 600; ++object) film.aovs[0].addCoverage(object, 1);
     film.pixels[0].sampleCount = 600;
     const Image image = imageFromFilm(film, kAll, {}, {});
-    EXPECT_EQ(image.channels.size(), 16u + 2u * 1200u);
+    EXPECT_EQ(image.channels.size(), 16u + 2u * 4u * kMostLayers) << "objects and materials, four channels a layer";
     writeImage(path("a.exr"), image);
-    EXPECT_EQ(channelValue(readImage(path("a.exr")), 0, "CryptoObject299.A"), 1.0f / 600.0f);
+    EXPECT_EQ(channelValue(readImage(path("a.exr")), 0, "CryptoObject15.A"), 1.0f / 600.0f);
     const std::string before = readBytes(path("a.exr"));
     {
-        const FileSizeLimit limit(20000);
+        const FileSizeLimit limit(2000);
         expectMentions(errorOf(ExitCode::failure, [&] { writeImage(path("a.exr"), image); }), "too large");
     }
     EXPECT_EQ(readBytes(path("a.exr")), before);

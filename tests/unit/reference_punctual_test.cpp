@@ -186,7 +186,8 @@ TYPED_TEST(PunctualSample, IsOneDirectionToTheLightsPosition) {
     EXPECT_EQ(sample->primitive, kNoPrimitive);
     EXPECT_EQ(sample->shadowRay.origin, origin);
     EXPECT_EQ(sample->shadowRay.direction, sample->wi);
-    EXPECT_NEAR(sample->shadowRay.tMax, 5, 10 * epsilon);
+    // Short of the light by 64 roundings of the largest coordinates, 7 and 3.
+    EXPECT_NEAR(sample->shadowRay.tMax, 5 - 32 * epsilon * (7 + 3), 16 * epsilon);
     EXPECT_NEAR(glm::length(Vec3d(sample->emission) - kIntensity / 25.0), 0.0, 10.0 * epsilon);
     EXPECT_FALSE(samplePunctualLight(pointLight({1, 2, 3}), origin)) << "no direction leads to the point itself";
 }

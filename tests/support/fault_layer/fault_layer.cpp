@@ -1,8 +1,8 @@
 // A Vulkan layer that passes every call on and lets the device fail at a chosen one, as no driver does when asked to.
 //
 //   ISOLUX_FAULT_AFTER=N         the device is lost once N submissions have gone well
-//   ISOLUX_FAULT_IN=wait         the submission is taken and the wait for it reports the loss; without, vkQueueSubmit
-//   does ISOLUX_FAULT_MEMORY_AFTER=N  there is no memory left once N allocations have gone well
+//   ISOLUX_FAULT_IN=wait         the submission is taken and the wait for it reports the loss, not vkQueueSubmit
+//   ISOLUX_FAULT_MEMORY_AFTER=N  there is no memory left once N allocations have gone well
 //
 // One instance and one device at a time, which is what the program under test has. The interface is that of the
 // loader's LoaderLayerInterface.md, version 2.
