@@ -57,6 +57,8 @@ class Packer {
 public:
     explicit Packer(const Scene& scene) : scene_(scene), lights_(buildLightTable(scene)) {
         packed_.space = chooseSpace(worldBounds(scene));
+        const double brightest = brightestLight();
+        if (brightest > 0.0) packed_.radianceScale = std::exp2(-std::ceil(std::log2(brightest)));
     }
 
     PackedScene pack() {
@@ -76,6 +78,21 @@ public:
     }
 
 private:
+    /// The largest component that any light record will hold, in the world's radiance.
+    [[nodiscard]] double brightestLight() const {
+        double brightest = maxComponent(scene_.environment.radiance);
+        for (const Material& material : scene_.materials)
+            brightest = std::max(brightest, maxComponent(material.emission));
+        for (const PunctualLight& light : scene_.punctualLights)
+            brightest = std::max(brightest, maxComponent(light.intensity) * intensityUnit(light));
+        return brightest;
+    }
+
+    /// What a point sends falls off with the square of the distance, which device space measures in its own unit.
+    [[nodiscard]] double intensityUnit(const PunctualLight& light) const {
+        return light.kind == PunctualKind::directional ? 1.0 : packed_.space.scale * packed_.space.scale;
+    }
+
     void addInstance(const Instance& instance) {
         const Mesh& mesh = scene_.meshes[instance.mesh];
         const Mat3d normalFromObject = normalMatrix(instance.worldFromObject);
@@ -156,7 +173,7 @@ private:
         packed_.materialCount = static_cast<std::uint32_t>(scene_.materials.size());
         for (const Material& material : scene_.materials)
             append(shared::MaterialRecord{word(Vec3f(material.baseColor), 0.0f),
-                                          word(Vec3f(material.emission), material.doubleSided ? 1.0f : 0.0f)});
+                                          word(radiance(material.emission), material.doubleSided ? 1.0f : 0.0f)});
         packed_.lightCount = static_cast<std::uint32_t>(lights_.lights.size());
         packed_.lightOffset = static_cast<std::uint32_t>(packed_.tables.size());
         std::vector<std::uint32_t> indexOfId(order.size());
@@ -190,7 +207,7 @@ private:
         const std::uint32_t kind = (sphere ? shared::kLightSphere : shared::kLightTriangle) |
                                    (material.doubleSided ? shared::kLightTwoSidedBit : 0u);
         return {word(Vec3f(p0), asFloat(indexOfId[id])), word(Vec3f(p1), 0.0f),
-                word(Vec3f(p2), static_cast<float>(area)), word(Vec3f(material.emission), asFloat(kind))};
+                word(Vec3f(p2), static_cast<float>(area)), word(radiance(material.emission), asFloat(kind))};
     }
 
     shared::LightRecord punctualLight(std::uint32_t index) const {
@@ -199,9 +216,7 @@ private:
         const std::uint32_t kind = directional                        ? shared::kLightDirectional
                                    : light.kind == PunctualKind::spot ? shared::kLightSpot
                                                                       : shared::kLightPoint;
-        // What a point sends falls off with the square of the distance, which device space measures in its own unit.
-        const double unit = directional ? 1.0 : packed_.space.scale * packed_.space.scale;
-        const Vec3f sent(light.intensity * unit);
+        const Vec3f sent = radiance(light.intensity * intensityUnit(light));
         const Vec3f position(directional ? Vec3d(0.0) : packed_.space.fromWorld(light.position));
         constexpr float kFarthestLight = 1e18f; // its square must stay in single precision's range
         if (!isFinite(sent) || !(maxComponent(glm::abs(position)) < kFarthestLight) ||
@@ -221,8 +236,10 @@ private:
         return {word(Vec3f(0.0f), asFloat(shared::kNone)),
                 glm::vec4(0.0f),
                 {range, 0.0f, 0.0f, 0.0f},
-                word(Vec3f(scene_.environment.radiance), asFloat(shared::kLightEnvironment))};
+                word(radiance(scene_.environment.radiance), asFloat(shared::kLightEnvironment))};
     }
+
+    [[nodiscard]] Vec3f radiance(const Vec3d& inWorld) const { return Vec3f(inWorld * packed_.radianceScale); }
 
     template <typename Record> void append(const Record& record) {
         const std::size_t first = packed_.tables.size();
@@ -251,7 +268,8 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.cameraUp = word(Vec3f(camera.worldFromCamera[1] * halfHeight), 0.0f);
     parameters.cameraForward = word(Vec3f(-camera.worldFromCamera[2]), 0.0f);
     const Environment& environment = scene.environment;
-    parameters.environment = word(Vec3f(environment.radiance), static_cast<float>(packed.environmentPdf));
+    parameters.environment =
+        word(Vec3f(environment.radiance * packed.radianceScale), static_cast<float>(packed.environmentPdf));
     parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};

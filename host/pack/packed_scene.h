@@ -35,7 +35,10 @@ struct PackedScene {
     double environmentPdf = 0.0;   ///< of light sampling, per solid angle; 0 if it never chooses the environment
     std::vector<std::uint32_t> firstOfObject; ///< first primitive id of each instance and each sphere, in scene order
     std::uint32_t stackBound = 1;             ///< entries a traversal stack must hold
-    BvhStatistics bvh;                        ///< of the binary tree that `nodes` was made from
+    /// Device radiance = this * world radiance: a power of two that brings the brightest light near 1, so that squares
+    /// of radiance, the variance, stay within single precision whatever the unit.
+    double radianceScale = 1.0;
+    BvhStatistics bvh; ///< of the binary tree that `nodes` was made from
     DeviceSpace space;
 };
 

@@ -24,11 +24,12 @@ constexpr std::uint32_t kHardwareLanes = 1u << 18;
 
 Vec3d toDouble(const glm::vec4& v) { return {v.x, v.y, v.z}; }
 
-PixelStatistics statisticsOf(const shared::FilmRecord& record) {
+/// `unit`: world radiance over device radiance.
+PixelStatistics statisticsOf(const shared::FilmRecord& record, double unit) {
     PixelStatistics pixel;
-    pixel.mean = toDouble(record.mean);
-    pixel.squaredDeviation = toDouble(record.squaredDeviation);
-    pixel.luminanceSquaredDeviation = record.squaredDeviation.w;
+    pixel.mean = toDouble(record.mean) * unit;
+    pixel.squaredDeviation = toDouble(record.squaredDeviation) * (unit * unit);
+    pixel.luminanceSquaredDeviation = record.squaredDeviation.w * (unit * unit);
     pixel.sampleCount = record.counts.x;
     pixel.hitCount = static_cast<std::uint64_t>(record.mean.w);
     pixel.pathSignature = record.counts.z;
@@ -56,6 +57,7 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     stackSize_ = packed.stackBound;
     firstOfObject_ = packed.firstOfObject;
     worldPerDevice_ = 1.0 / packed.space.scale;
+    radiancePerDevice_ = 1.0 / packed.radianceScale;
     statistics_.packSeconds = packing.seconds();
 
     announce("uploading");
@@ -207,7 +209,7 @@ void PathRenderer::joinTile(Film& film, const Tile& tile, const Batch& batch) co
                 throwFailure(device_.description().name,
                              fmt::format("it took {} of {} samples of pixel ({}, {}): the driver cut the work short",
                                          record.counts.x, batch.sampleCount, tile.x + x, tile.y + y));
-            film.at(tile.x + x, tile.y + y).merge(statisticsOf(record));
+            film.at(tile.x + x, tile.y + y).merge(statisticsOf(record, radiancePerDevice_));
             film.rays += record.counts.y;
             film.diagnostics.merge({record.counts.w, record.faults.x, record.faults.y, record.faults.z});
             if (options_.aovs == Aovs::on) joinAovs(film.aovsAt(tile.x + x, tile.y + y), aovRecords[lane]);

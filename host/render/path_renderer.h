@@ -87,6 +87,7 @@ private:
     std::unique_ptr<Buffer> films_;
     std::unique_ptr<Buffer> aovs_;
     std::vector<std::uint32_t> firstOfObject_;
+    double radiancePerDevice_ = 1.0;
     double worldPerDevice_ = 1.0; ///< length
     std::unique_ptr<Buffer> stacks_;
     std::unique_ptr<Buffer> completion_;

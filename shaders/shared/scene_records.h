@@ -48,7 +48,7 @@ struct LightRecord {
     vec4 p0Primitive;  // w: index of its PrimitiveRecord or kNone, as bits
     vec4 p1Choice;     // w: probability of choosing this light
     vec4 p2Area;       // w: area of a triangle
-    vec4 emissionKind; // radiance, or what a punctual light sends in device space; w: one of kLight..., as bits
+    vec4 emissionKind; // device radiance, or what a punctual light sends; w: one of kLight..., as bits
 };
 ISOLUX_CHECK_SIZE(LightRecord, 64);
 

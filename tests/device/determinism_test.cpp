@@ -97,6 +97,26 @@ TEST_F(Determinism, ScalingByAPowerOfTwoChangesNothing) {
     }
 }
 
+/// Radiance in any unit: the same image times a power of two, its variance too, though single precision holds neither.
+TEST_F(Determinism, ScalingLightByAPowerOfTwoChangesNothing) {
+    Scene scene = loadScene(projectScene("courtyard"));
+    const RenderSettings settings = imageSettings(48, 36, 16);
+    const Film film = render(scene, settings);
+    for (const int exponent : {-120, 120}) {
+        const double factor = std::ldexp(1.0, exponent);
+        Scene scaled = scene;
+        scaled.environment.radiance *= factor;
+        for (PunctualLight& light : scaled.punctualLights) light.intensity *= factor;
+        Film other = render(scaled, settings);
+        for (PixelStatistics& pixel : other.pixels) {
+            pixel.mean /= factor;
+            pixel.squaredDeviation /= factor * factor;
+            pixel.luminanceSquaredDeviation /= factor * factor;
+        }
+        EXPECT_EQ(differingPixels(film, other), 0u) << exponent;
+    }
+}
+
 TEST_F(Determinism, AnInterruptedRenderKeepsWholeTiles) {
     const Scene scene = loadScene(projectScene("cornell_box"));
     const RenderSettings settings = imageSettings(64, 64, 64);
