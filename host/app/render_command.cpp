@@ -105,6 +105,10 @@ ExitCode run(RenderCommand command) {
     Film film(scene.settings.width, scene.settings.height);
     RunReport report = describeRun(scene, command.scene);
     const std::optional<Error> failure = renderWhatCanBe(film, report, scene, command);
+    if (film.maxSampleCount() == 0) {
+        spdlog::warn("interrupted before the first sample; nothing was written");
+        return ExitCode::interrupted;
+    }
     describeFilm(report, film);
     report.timeLimit = command.seconds;
     report.layers = layerNames(command.output.layers);
@@ -113,10 +117,6 @@ ExitCode run(RenderCommand command) {
                               : interruptRequested() ? Completion::interrupted
                                                      : Completion::whole;
     const Completion completion = completionOf(film, scene.settings, command.seconds, ending);
-    if (completion == Completion::interrupted && film.maxSampleCount() == 0) {
-        spdlog::warn("interrupted before the first sample; nothing was written");
-        return ExitCode::interrupted;
-    }
     if (failure) fmt::print(stderr, "isolux: error: {}\n", failure->what());
     if (command.statistics || !command.scene.quiet)
         fmt::print("{}", toText(report));

@@ -1,9 +1,8 @@
 // The fixture of every device test: a device under the validation layers, which must have said nothing at the end.
 #pragma once
 
-#include "film/film.h"
 #include "gpu/device.h"
-#include "render/path_renderer.h"
+#include "support/render.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -21,11 +20,7 @@ protected:
     }
 
     [[nodiscard]] Film render(const Scene& scene, const RenderSettings& settings, const RenderOptions& options = {}) {
-        Film film(settings.width, settings.height);
-        PathRenderer renderer(device_, scene, settings, options);
-        renderer.render(film, [](double) { return Continue::yes; });
-        EXPECT_TRUE(film.diagnostics.clean());
-        return film;
+        return renderOnDevice(device_, scene, settings, options);
     }
 
     Device device_{{"", Validation::on}};

@@ -9,10 +9,10 @@
 #include "film/image.h"
 #include "load/gltf.h"
 #include "reference/reference.h"
-#include "render/path_renderer.h"
 #include "report/bias.h"
 #include "report/blocks.h"
 #include "report/format.h"
+#include "support/render.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ constexpr std::uint32_t kHeight = 192;
 constexpr std::size_t kBlocks = (kWidth / 16) * (kHeight / 16);
 
 /// If everything agrees, one of all the scenes fails with a probability of 1 %. At most two comparisons a scene.
-double commonLimit() { return zLimit(2 * kCases.size() * (kBlocks + 1), 0.01); }
+double commonLimit() { return zLimit(2 * kCases.size() * (kBlocks + 1), kFamilyError); }
 
 RenderSettings imageSettings(std::uint64_t seed) {
     RenderSettings settings;
@@ -56,21 +56,6 @@ RenderSettings imageSettings(std::uint64_t seed) {
     settings.sampleCount = longTests() ? 256 : 64;
     settings.seed = seed;
     return settings;
-}
-
-Image renderOnDevice(const Scene& scene, const RenderSettings& settings) {
-    const Device device({});
-    Film film(settings.width, settings.height);
-    PathRenderer renderer(device, scene, settings, {});
-    renderer.render(film, [](double) { return Continue::yes; });
-    EXPECT_TRUE(film.diagnostics.clean());
-    return imageFromFilm(film, {});
-}
-
-Image renderOnProcessor(const Scene& scene, const RenderSettings& settings, SideRule sides) {
-    ReferenceOptions options;
-    options.sides = sides;
-    return imageFromFilm(renderReference(scene, settings, options, {}), {});
 }
 
 /// Where light is rare, 64 samples of a pixel see none of it and think themselves exact. The truth rests on 4096: the
@@ -112,15 +97,18 @@ protected:
         EXPECT_LT(std::abs(worst.z), commonLimit()) << what;
     }
 
-    [[nodiscard]] Image onDevice(const RenderSettings& settings) const {
-        Image image = renderOnDevice(scene_, settings);
+    [[nodiscard]] Image widened(const Film& film) const {
+        Image image = imageFromFilm(film, {});
         widenVariance(image, truth_);
         return image;
     }
+    [[nodiscard]] Image onDevice(const RenderSettings& settings) const {
+        return widened(renderOnDevice(Device({}), scene_, settings));
+    }
     [[nodiscard]] Image onProcessor(const RenderSettings& settings, SideRule sides) const {
-        Image image = renderOnProcessor(scene_, settings, sides);
-        widenVariance(image, truth_);
-        return image;
+        ReferenceOptions options;
+        options.sides = sides;
+        return widened(renderReference(scene_, settings, options, {}));
     }
 
     Scene scene_;

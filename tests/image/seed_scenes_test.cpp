@@ -1,7 +1,7 @@
 // Every scene of the collection beside the checkout renders: without a fault, and not black.
 #include "core/log.h"
 #include "load/gltf.h"
-#include "render/path_renderer.h"
+#include "support/render.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -24,13 +24,12 @@ TEST(SeedScenes, AllRender) {
         if (entry.path().extension() != ".glb") continue;
         ++count;
         const Scene scene = loadScene(entry.path());
-        Film film(settings.width, settings.height);
-        PathRenderer(device, scene, settings, {}).render(film, [](double) { return Continue::yes; });
-        EXPECT_TRUE(film.diagnostics.clean()) << entry.path();
-        EXPECT_EQ(film.minSampleCount(), settings.sampleCount) << entry.path();
+        SCOPED_TRACE(entry.path());
+        const Film film = renderOnDevice(device, scene, settings);
+        EXPECT_EQ(film.minSampleCount(), settings.sampleCount);
         std::size_t lit = 0;
         for (const PixelStatistics& pixel : film.pixels) lit += luminance(pixel.mean) > 0.0 ? 1 : 0;
-        EXPECT_GT(lit, film.pixels.size() / 20) << entry.path();
+        EXPECT_GT(lit, film.pixels.size() / 20);
     }
     EXPECT_EQ(count, 21);
 }

@@ -1,9 +1,8 @@
 // The device against the reference on independent random numbers, and against exact answers, with intervals.
-#include "film/film.h"
 #include "load/gltf.h"
 #include "reference/reference.h"
-#include "render/path_renderer.h"
 #include "report/statistics.h"
+#include "support/render.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -14,14 +13,6 @@
 
 namespace isolux::test {
 namespace {
-
-Film renderOnDevice(const Device& device, const Scene& scene, const RenderSettings& settings) {
-    Film film(settings.width, settings.height);
-    PathRenderer renderer(device, scene, settings, {});
-    renderer.render(film, [](double) { return Continue::yes; });
-    EXPECT_TRUE(film.diagnostics.clean());
-    return film;
-}
 
 struct MeanWithError {
     double mean = 0.0;
