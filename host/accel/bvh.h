@@ -23,7 +23,12 @@ struct Bvh {
     std::uint32_t depth = 0;               ///< nodes on the longest path from the root, the root counted
 };
 
+/// How a node's primitives are divided. `surfaceArea`: where the surface area heuristic expects the least work. `mean`:
+/// at the mean of the boxes' centres, on the axis on which that divides them most evenly, until a leaf is small enough.
+enum class SplitMethod { surfaceArea, mean };
+
 struct BvhOptions {
+    SplitMethod split = SplitMethod::surfaceArea;
     std::uint32_t maxLeafSize = 4;
     std::uint32_t binCount = 16;
     /// No path from the root is longer than this: near it, nodes are halved by count instead of by cost. At least

@@ -63,7 +63,7 @@ void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const
     ReferenceOptions reference;
     reference.precision = options.precision;
     reference.aovs = options.aovs;
-    reference.seconds = options.seconds;
+    reference.stopping.seconds = options.seconds;
     film = renderReference(run.scene, run.settings, reference, bar.callback());
 }
 

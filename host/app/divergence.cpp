@@ -22,9 +22,8 @@ public:
         settings.firstSample = sample;
         settings.sampleCount = 1;
         settings.maxDepth = maxDepth;
-        const Film reference =
-            renderReferenceRegion(scene_, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::on},
-                                  {pixel_.x, pixel_.y, 1, 1}, untilInterrupt);
+        const Film reference = renderReferenceRegion(scene_, settings, {Precision::doublePrecision, PathSignatures::on},
+                                                     {pixel_.x, pixel_.y, 1, 1}, untilInterrupt);
         return film.at(pixel_.x, pixel_.y).pathSignature != reference.at(0, 0).pathSignature;
     }
 

@@ -35,7 +35,7 @@ Vec3d latticeDirection(int index, int count) {
 CameraPlace placeOf(const Scene& scene, const Camera& camera) {
     constexpr int kProbes = 128;
     const World<double> world = flatten<double>(scene);
-    const RayCaster<double> caster(world, Intersector::bvh);
+    const RayCaster<double> caster(world);
     std::optional<std::uint32_t> around;
     for (int i = 0; i < kProbes; ++i) {
         const Ray<double> ray{camera.position, latticeDirection(i, kProbes)};

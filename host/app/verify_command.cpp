@@ -69,8 +69,8 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
     Film reference;
     {
         ProgressBar bar("reference", display);
-        reference = renderReference(run.scene, run.settings,
-                                    {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, bar.callback());
+        reference =
+            renderReference(run.scene, run.settings, {Precision::doublePrecision, PathSignatures::on}, bar.callback());
         outcome.referenceSeconds = bar.elapsedSeconds();
     }
     if (reference.minSampleCount() < run.settings.sampleCount) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include "core/math.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -72,13 +73,33 @@ struct Diagnostics {
     void merge(const Diagnostics& other);
 };
 
+/// The sums of samples that were dealt to independently randomised replicates in turn. Samples of one replicate depend
+/// on each other, so their scatter says nothing about the error of their mean; that of the replicates' means does.
+struct PixelReplicates {
+    static constexpr std::uint32_t kCount = 16;
+    std::array<Vec3d, kCount> sum{};
+    std::array<std::uint32_t, kCount> sampleCount{};
+
+    /// `sample` is the absolute index: it belongs to replicate sample mod kCount.
+    void add(std::uint32_t sample, const Vec3d& radiance);
+    /// Replaces the squared deviations of `pixel`, which holds the same samples, so that variance / samples is the
+    /// variance of their mean: with n_r samples of mean m_r in each of R replicates, variance = sum n_r (m_r - m)^2 /
+    /// (R - 1). Nothing changes while fewer than two replicates have samples.
+    void refine(PixelStatistics& pixel) const;
+
+    friend bool operator==(const PixelReplicates&, const PixelReplicates&) = default;
+};
+
 struct Film {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::vector<PixelStatistics> pixels; ///< row by row, top row first
-    std::vector<PixelAovs> aovs;         ///< beside `pixels`, or empty if they were not asked for
+    std::vector<PixelStatistics> pixels;     ///< row by row, top row first
+    std::vector<PixelAovs> aovs;             ///< beside `pixels`, or empty if they were not asked for
+    std::vector<PixelReplicates> replicates; ///< beside `pixels`, or empty if samples are independent
     Diagnostics diagnostics;
-    std::uint64_t rays = 0; ///< rays traced: camera, scattered and shadow rays
+    std::uint64_t rays = 0;           ///< rays traced: camera, scattered and shadow rays
+    std::uint64_t boxTests = 0;       ///< boxes that rays were tested against, if that was counted
+    std::uint64_t primitiveTests = 0; ///< triangles and spheres, likewise
 
     Film() = default;
     Film(std::uint32_t filmWidth, std::uint32_t filmHeight)
@@ -90,9 +111,16 @@ struct Film {
     }
     [[nodiscard]] PixelAovs& aovsAt(std::uint32_t x, std::uint32_t y) { return aovs[std::size_t{y} * width + x]; }
     void keepAovs() { aovs.resize(pixels.size()); }
+    void keepReplicates() { replicates.resize(pixels.size()); }
+    /// `PixelReplicates::refine` for every pixel; nothing without replicates. To be called when a pass is complete.
+    void refineVariance();
     /// The least and most samples any pixel holds: they differ only in an interrupted render.
     [[nodiscard]] std::uint64_t minSampleCount() const;
     [[nodiscard]] std::uint64_t maxSampleCount() const;
 };
+
+/// Relative RMSE of the image's luminance, estimated from its own variance: sqrt(mean of variance_Y / samples) / mean
+/// luminance. NaN while a pixel has fewer than two samples, as its variance is unknown.
+[[nodiscard]] double estimatedRelativeRmse(const Film& film);
 
 } // namespace isolux

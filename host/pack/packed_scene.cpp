@@ -273,7 +273,7 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};
-    parameters.depthLights = {settings.maxDepth, settings.rouletteStart, packed.lightBits, packed.lightCount};
+    parameters.depthLights = {settings.maxDepth, settings.roulette.start, packed.lightBits, packed.lightCount};
     parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, 0};
     parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()), 0, packed.materialCount, 0};
     return parameters;

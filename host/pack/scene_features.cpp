@@ -27,7 +27,7 @@ SceneFeatures findFeatures(const Scene& scene, const RenderSettings& settings) {
     features.smoothNormals = std::any_of(scene.instances.begin(), scene.instances.end(),
                                          [&](const Instance& instance) { return isSmooth(scene, instance); });
     // A path of maxDepth bounces is never asked whether to make bounce maxDepth + 1.
-    features.roulette = settings.maxDepth >= settings.rouletteStart;
+    features.roulette = settings.maxDepth >= settings.roulette.start;
     const LightTable lights = buildLightTable(scene);
     features.lights = countLights(lights);
     features.areaLights = hasKind(lights, LightKind::area);

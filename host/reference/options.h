@@ -1,18 +1,13 @@
 // How the reference renders: choices that must not change the expectation of the image.
 #pragma once
 
+#include "film/sample_plan.h"
 #include "scene/render_settings.h"
-
-#include <optional>
 
 namespace isolux {
 
 /// The type of every quantity along a path. Sums over samples are double in both.
 enum class Precision { doublePrecision, singlePrecision };
-
-/// How rays find primitives: through the BVH, or by asking every primitive (which checks the BVH). Same hits, bit by
-/// bit.
-enum class Intersector { bvh, bruteForce };
 
 /// Which normal tells the two sides of a surface apart. `geometric` is the written convention. `shading` is the rule of
 /// renderers that ask the shading normal alone, such as Mitsuba: rays may then pass through the surface they leave. It
@@ -21,11 +16,11 @@ enum class SideRule { geometric, shading };
 
 struct ReferenceOptions {
     Precision precision = Precision::doublePrecision;
-    Intersector intersector = Intersector::bvh;
     PathSignatures signatures = PathSignatures::off;
     Aovs aovs = Aovs::off;
     SideRule sides = SideRule::geometric;
-    std::optional<double> seconds = std::nullopt; ///< stop after about this time, at least one sample a pixel
+    TraversalCounts counts = TraversalCounts::off;
+    StoppingRule stopping{};
 };
 
 } // namespace isolux

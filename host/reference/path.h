@@ -27,7 +27,7 @@ public:
     PathTracer(const Scene& scene, const World<Real>& world, const RenderSettings& settings,
                const ReferenceOptions& options)
         : scene_(scene), world_(world), settings_(settings), sides_(options.sides),
-          camera_(scene.cameras[settings.camera], settings), caster_(world, options.intersector),
+          camera_(scene.cameras[settings.camera], settings), caster_(world, settings.intersection),
           lights_(scene, world) {}
 
     [[nodiscard]] PathResult<Real> trace(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
@@ -45,7 +45,7 @@ public:
             if (!lights_.empty()) addDirectLight(path, *surface, stream.block(1 + 2 * bounce));
             const PhiloxBlock words = stream.block(2 + 2 * bounce);
             if (scatter(path, *surface, words) == Fate::ends) break;
-            if (bounce + 1 >= settings_.rouletteStart && roulette(path, words[2]) == Fate::ends) break;
+            if (bounce + 1 >= settings_.roulette.start && roulette(path, words[2]) == Fate::ends) break;
         }
         return path.result;
     }

@@ -27,8 +27,9 @@ enum class Visibility { clear, blocked };
 /// distance the lowest primitive id wins.
 template <typename Real> class RayCaster {
 public:
-    RayCaster(const World<Real>& world, Intersector intersector) : world_(world), intersector_(intersector) {
-        if (intersector == Intersector::bvh) bvh_ = buildBvh(world.boxes);
+    explicit RayCaster(const World<Real>& world, const IntersectionMethod& method = {})
+        : world_(world), method_(method) {
+        if (method.acceleration != Acceleration::none) bvh_ = buildBvh(world.boxes);
     }
 
     [[nodiscard]] std::optional<Hit<Real>> nearest(const Ray<Real>& ray) const {
@@ -86,7 +87,7 @@ private:
     /// Calls `visit` with primitives that the ray may hit. It returns the distance beyond which no hit matters any
     /// more, and `kStop` to end the search.
     template <typename Visit> void forEachCandidate(const Ray<Real>& ray, const Visit& visit) const {
-        if (intersector_ == Intersector::bvh) {
+        if (method_.acceleration != Acceleration::none) {
             walkBvh(ray, visit);
             return;
         }
@@ -126,7 +127,7 @@ private:
     }
 
     const World<Real>& world_;
-    Intersector intersector_;
+    IntersectionMethod method_;
     Bvh bvh_;
 };
 

@@ -49,7 +49,7 @@ public:
     }
 
     [[nodiscard]] Film render(const ProgressCallback& progress) {
-        const Pacing pacing(options_.seconds, kLargestPass);
+        const Pacing pacing(options_.stopping.seconds, kLargestPass);
         std::uint32_t done = 0;
         while (const std::uint32_t pass = nextPass(pacing, done)) {
             renderPass(settings_.firstSample + done, pass);

@@ -1,7 +1,15 @@
 #include "scene/lights.h"
 
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace isolux {
 namespace {
+
+constexpr std::uint64_t kMaxLightSamples = 0x7FFFFFFFu; // a shading point: their random blocks have 31 bits
 
 /// Flux of a diffuse emitter, as luminance: pi * area * radiance, twice that if both faces emit.
 double emittedPower(const Material& material, double area, bool closed) {
@@ -31,17 +39,48 @@ double triangleArea(const Mat4d& worldFromObject, const Mesh& mesh, const std::a
 /// Collects lights with their powers, in the order of the table.
 class Collector {
 public:
-    explicit Collector(const Scene& scene) : scene_(scene) { table_.lightOf.assign(primitiveCount(scene), kNoLight); }
+    Collector(const Scene& scene, const RenderSettings& settings) : scene_(scene), settings_(settings) {
+        table_.lightOf.assign(primitiveCount(scene), kNoLight);
+    }
 
     LightTable collect() {
-        for (const Instance& instance : scene_.instances) addInstance(instance);
-        for (const Sphere& sphere : scene_.spheres) addSphere(sphere);
+        if (!followsLight(settings_)) return std::move(table_);
+        if (samplesWhatScatteringFinds()) {
+            for (const Instance& instance : scene_.instances) addInstance(instance);
+            for (const Sphere& sphere : scene_.spheres) addSphere(sphere);
+        }
+        table_.areaCount = static_cast<std::uint32_t>(table_.lights.size());
         addDistantAndPunctual();
         table_.choice = buildAliasTable(powers_);
+        countSamples();
         return std::move(table_);
     }
 
 private:
+    [[nodiscard]] bool samplesWhatScatteringFinds() const {
+        return settings_.lightSampling == LightSampling::light || settings_.lightSampling == LightSampling::mis;
+    }
+
+    /// How many samples a shading point takes, and how many of them each light can expect.
+    void countSamples() {
+        const std::size_t lights = table_.lights.size();
+        const std::uint64_t each = settings_.lightSamples;
+        table_.mode = settings_.lightChoice;
+        table_.samplesPerArea = settings_.lightSamples;
+        std::uint64_t total = lights == 0 ? 0 : each;
+        if (table_.mode == LightChoice::all) total = table_.punctualCount + each * (lights - table_.punctualCount);
+        if (total > kMaxLightSamples)
+            throwBadInput("--light-samples",
+                          fmt::format("{} light samples a shading point are more than {}", total, kMaxLightSamples));
+        table_.sampleCount = static_cast<std::uint32_t>(total);
+        const auto expected = [&](std::size_t light) {
+            const auto n = static_cast<double>(each);
+            if (table_.mode == LightChoice::one) return n * table_.choice.pdf[light];
+            return table_.lights[light].kind == LightKind::punctual ? 1.0 : n;
+        };
+        for (std::size_t light = 0; light < lights; ++light) table_.samplesOf.push_back(expected(light));
+    }
+
     bool add(const Light& light, double power) {
         if (!(power > 0.0)) return false;
         table_.lights.push_back(light);
@@ -75,7 +114,8 @@ private:
         const double radius = worldRadius(scene_);
         const double disc = kPi * radius * radius;
         for (std::uint32_t i = 0; i < scene_.punctualLights.size(); ++i)
-            add({LightKind::punctual, i}, punctualPower(scene_.punctualLights[i], disc));
+            if (add({LightKind::punctual, i}, punctualPower(scene_.punctualLights[i], disc))) ++table_.punctualCount;
+        if (!samplesWhatScatteringFinds()) return;
         const Environment& environment = scene_.environment;
         const auto light = static_cast<std::uint32_t>(table_.lights.size());
         if (add({LightKind::environment, 0}, environment.solidAngle() * disc * luminance(environment.radiance)))
@@ -83,6 +123,7 @@ private:
     }
 
     const Scene& scene_;
+    const RenderSettings& settings_;
     LightTable table_;
     std::vector<double> powers_;
     std::uint32_t primitive_ = 0;
@@ -90,6 +131,14 @@ private:
 
 } // namespace
 
-LightTable buildLightTable(const Scene& scene) { return Collector(scene).collect(); }
+std::uint32_t LightTable::lightOfSample(std::uint32_t index) const {
+    const std::uint64_t areaSamples = std::uint64_t{areaCount} * samplesPerArea;
+    if (index < areaSamples) return index / samplesPerArea;
+    return areaCount + std::min(static_cast<std::uint32_t>(index - areaSamples), punctualCount);
+}
+
+LightTable buildLightTable(const Scene& scene, const RenderSettings& settings) {
+    return Collector(scene, settings).collect();
+}
 
 } // namespace isolux

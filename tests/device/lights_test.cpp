@@ -147,8 +147,8 @@ protected:
         RenderOptions options;
         options.aovs = Aovs::on;
         const Film film = render(scene, settings, options);
-        const Film reference = renderReference(
-            scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::off, Aovs::on}, {});
+        const Film reference =
+            renderReference(scene, settings, {Precision::doublePrecision, PathSignatures::off, Aovs::on}, {});
         ASSERT_EQ(film.aovs.size(), film.pixels.size());
         std::size_t otherObjects = 0;
         for (std::size_t i = 0; i < film.aovs.size(); ++i) {

@@ -19,8 +19,7 @@ protected:
         RenderOptions options;
         options.signatures = PathSignatures::on;
         const Film film = render(scene, settings, options);
-        const Film reference =
-            renderReference(scene, settings, {Precision::doublePrecision, Intersector::bvh, PathSignatures::on}, {});
+        const Film reference = renderReference(scene, settings, {Precision::doublePrecision, PathSignatures::on}, {});
         const PairedDifferences differences = pairedDifferences(film, reference, {kTolerance, nullptr});
         if (differences.differentSignatures == 0) {
             EXPECT_EQ(film.rays, reference.rays);

@@ -10,7 +10,7 @@ using namespace test;
 /// Late roulette: most of the variance of a furnace is roulette's, so a tight interval costs least without.
 RenderSettings lateRoulette(std::uint32_t samples) {
     RenderSettings settings = squareImage(16, samples);
-    settings.rouletteStart = 24;
+    settings.roulette.start = 24;
     return settings;
 }
 
@@ -59,9 +59,9 @@ TEST(ReferenceFurnace, DepthCutsTheSeries) {
 
 TEST(ReferenceFurnace, RouletteDoesNotChangeTheMean) {
     RenderSettings settings = squareImage(16, 1000);
-    settings.rouletteStart = 1;
+    settings.roulette.start = 1;
     const PixelStatistics early = renderTotal(furnaceBox(Mat4d(1.0)), settings);
-    settings.rouletteStart = 60; // 0.8^60 = 1.5e-6 of the energy
+    settings.roulette.start = 60; // 0.8^60 = 1.5e-6 of the energy
     settings.sampleCount = 300;
     const PixelStatistics late = renderTotal(furnaceBox(Mat4d(1.0)), settings);
     expectRadiance(early, kFurnace, 0.005);

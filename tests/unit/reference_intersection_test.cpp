@@ -17,7 +17,7 @@ template <typename Real> int countLeaks(const Mesh& mesh, const Vec3d& offset, d
     SceneBuilder builder;
     builder.mesh(mesh, translation(offset));
     const World<Real> world = flatten<Real>(builder.scene);
-    const RayCaster<Real> caster(world, Intersector::bvh);
+    const RayCaster<Real> caster(world);
     Random random(42);
     int leaks = 0;
     for (int i = 0; i < rays; ++i) {
@@ -51,7 +51,7 @@ TYPED_TEST(ReferenceIntersection, BvhFindsWhatBruteForceFinds) {
     using Real = TypeParam;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const World<Real> world = flatten<Real>(randomSoup(seed));
-        const RayCaster<Real> fast(world, Intersector::bvh), plain(world, Intersector::bruteForce);
+        const RayCaster<Real> fast(world), plain(world, {Acceleration::none});
         Random random(seed + 100);
         int hits = 0;
         for (int i = 0; i < 5000; ++i) {
@@ -83,8 +83,8 @@ TEST(ReferencePrecision, FloatAgreesWithDouble) {
     const Scene scene = randomSoup(9);
     const World<float> single = flatten<float>(scene);
     const World<double> full = flatten<double>(scene);
-    const RayCaster<float> casterSingle(single, Intersector::bvh);
-    const RayCaster<double> casterFull(full, Intersector::bvh);
+    const RayCaster<float> casterSingle(single);
+    const RayCaster<double> casterFull(full);
     Random random(10);
     int differing = 0, hits = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -113,7 +113,7 @@ TYPED_TEST(ReferenceIntersection, DegenerateTrianglesAreNeverHit) {
     builder.mesh(triangleMesh({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
     builder.mesh(triangleMesh({-1, 0, 0}, {1, 0, 0}, {-1, 0, 0}));
     const World<Real> world = flatten<Real>(builder.scene);
-    const RayCaster<Real> caster(world, Intersector::bruteForce);
+    const RayCaster<Real> caster(world, {Acceleration::none});
     Random random(4);
     for (int i = 0; i < 2000; ++i) {
         const double x = random.between(-1, 1);
@@ -128,7 +128,7 @@ TYPED_TEST(ReferenceIntersection, TrianglesAreHitFromBothSidesAndOnlyInFront) {
     SceneBuilder builder;
     builder.mesh(squareMesh(0));
     const World<Real> world = flatten<Real>(builder.scene);
-    const RayCaster<Real> caster(world, Intersector::bvh);
+    const RayCaster<Real> caster(world);
     for (const Real z : {Real(2), Real(-2)}) {
         const Vec3<Real> origin(Real(0.25), Real(0.5), z);
         const auto hit = caster.nearest({origin, Vec3<Real>(0, 0, -z / 2)});
@@ -179,7 +179,7 @@ TYPED_TEST(ReferenceIntersection, SmallSphereFarAwayIsHitWithinItsRadius) {
 /// Hits the world's primitives from everywhere and starts a ray in a random direction on the near side of each.
 template <typename Real> int countFalseHits(const Scene& scene, const Vec3d& center, double size, int rays) {
     const World<Real> world = flatten<Real>(scene);
-    const RayCaster<Real> caster(world, Intersector::bvh);
+    const RayCaster<Real> caster(world);
     Random random(6);
     int falseHits = 0, hits = 0;
     for (int i = 0; i < rays; ++i) {
@@ -220,7 +220,7 @@ TYPED_TEST(ReferenceIntersection, RaysInsideASphereStayInside) {
         SceneBuilder builder;
         builder.scene.spheres.push_back({"", center, 2.0, 0});
         const World<Real> world = flatten<Real>(builder.scene);
-        const RayCaster<Real> caster(world, Intersector::bvh);
+        const RayCaster<Real> caster(world);
         Random random(7);
         Ray<Real> ray{Vec3<Real>(center), Vec3<Real>(0, 0, 1)};
         for (int i = 0; i < 100000; ++i) {
@@ -238,7 +238,7 @@ TYPED_TEST(ReferenceIntersection, RaysInsideASphereStayInside) {
 Surface<double> surfaceSeen(const Scene& scene, const Vec3d& origin, const Vec3d& target) {
     const World<double> world = flatten<double>(scene);
     const Ray<double> ray = rayFrom<double>(origin, target);
-    const auto hit = RayCaster<double>(world, Intersector::bvh).nearest(ray);
+    const auto hit = RayCaster<double>(world).nearest(ray);
     EXPECT_TRUE(hit);
     return hit ? surfaceAt(world, ray, *hit) : Surface<double>{};
 }

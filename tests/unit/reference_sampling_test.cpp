@@ -227,7 +227,7 @@ TYPED_TEST(ReferenceLights, BothWaysToADirectionAgreeOnItsDensity) {
         {"", {3, 0, 0}, 1.0, material}, {"", {0, 3, 0}, 1e-3, material}, {"", {0, 0, 0}, 20.0, material}};
     const World<Real> world = flatten<Real>(builder.scene);
     const Lights<Real> lights(builder.scene, world);
-    const RayCaster<Real> caster(world, Intersector::bvh);
+    const RayCaster<Real> caster(world);
     Random random(8);
     Surface<Real> receiver{};
     std::map<std::uint32_t, int> compared;
@@ -256,7 +256,7 @@ TYPED_TEST(ReferenceLights, ALightIsNotHiddenByItsNeighboursOrItself) {
     builder.mesh(mesh, translation({3, 50, 7}));
     const World<Real> world = flatten<Real>(builder.scene);
     const Lights<Real> lights(builder.scene, world);
-    const RayCaster<Real> caster(world, Intersector::bvh);
+    const RayCaster<Real> caster(world);
     Random random(11);
     Surface<Real> receiver{};
     int seen = 0;

@@ -148,11 +148,12 @@ TEST(ReferenceFilm, HalvesJoinToTheWhole) {
 
 TEST(ReferenceFilm, IsTheSameForBruteForceAndForOneThread) {
     for (const Precision precision : {Precision::singlePrecision, Precision::doublePrecision}) {
-        const Film film = render(smallRoom(), smallSettings(16), {precision, Intersector::bvh, PathSignatures::on});
-        expectSameFilm(
-            film, render(smallRoom(), smallSettings(16), {precision, Intersector::bruteForce, PathSignatures::on}));
+        const Film film = render(smallRoom(), smallSettings(16), {precision, PathSignatures::on});
+        RenderSettings everyPrimitive = smallSettings(16);
+        everyPrimitive.intersection.acceleration = Acceleration::none;
+        expectSameFilm(film, render(smallRoom(), everyPrimitive, {precision, PathSignatures::on}));
         const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
-        expectSameFilm(film, render(smallRoom(), smallSettings(16), {precision, Intersector::bvh, PathSignatures::on}));
+        expectSameFilm(film, render(smallRoom(), smallSettings(16), {precision, PathSignatures::on}));
     }
 }
 
@@ -205,7 +206,7 @@ TEST(ReferenceFilm, SignatureOfAPathIsTheWrittenHash) {
     // Each triangle lies in the other's plane: light sampling needs no ray.
     EXPECT_EQ(render(builder.scene, smallSettings(1), on).at(3, 3).pathSignature, hash({0, 2, kNoPrimitive}));
     RenderSettings settings = smallSettings(1);
-    settings.rouletteStart = 1;
+    settings.roulette.start = 1;
     builder.scene.materials[0].baseColor = Vec3d(1e-9);
     EXPECT_EQ(render(builder.scene, settings, on).at(3, 3).pathSignature, hash({0, 2, 3}));
 }
@@ -237,7 +238,7 @@ TEST(ReferenceFilm, AnInterruptedRenderHoldsWholePasses) {
 
 TEST(ReferenceFilm, WithoutTimeEveryPixelHasOneSample) {
     ReferenceOptions options;
-    options.seconds = 0.0;
+    options.stopping.seconds = 0.0;
     std::vector<double> fractions;
     const auto note = [&](double fraction) {
         fractions.push_back(fraction);
@@ -250,13 +251,13 @@ TEST(ReferenceFilm, WithoutTimeEveryPixelHasOneSample) {
 
 TEST(ReferenceFilm, TimeToSpareChangesNothing) {
     ReferenceOptions options;
-    options.seconds = 1e6;
+    options.stopping.seconds = 1e6;
     expectSameFilm(render(smallRoom(), smallSettings(40), options), render(smallRoom(), smallSettings(40)));
 }
 
 TEST(ReferenceFilm, ATimeLimitEndsTheRenderBetweenPasses) {
     ReferenceOptions options;
-    options.seconds = 0.02;
+    options.stopping.seconds = 0.02;
     double last = 0.0;
     const auto note = [&](double fraction) {
         EXPECT_GE(fraction, last);
