@@ -40,7 +40,7 @@ void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const Ba
     spdlog::debug("device {}: {}", device.description().name, device.description().driverVersion);
     RenderOptions renderOptions;
     renderOptions.aovs = options.aovs;
-    renderOptions.seconds = options.seconds;
+    renderOptions.stopping.seconds = options.seconds;
     renderOptions.dispatchSeconds = options.dispatchSeconds;
     renderOptions.stage = [&](std::string_view name) { bar.stage(name); };
     PathRenderer renderer(device, run.scene, run.settings, renderOptions);

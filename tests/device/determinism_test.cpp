@@ -138,7 +138,7 @@ TEST_F(Determinism, ATimeLimitStopsAllPixelsAtTheSameSample) {
     RenderOptions options;
     options.maxLanes = 1024;
     for (const double seconds : {0.0, 1.0}) {
-        options.seconds = seconds;
+        options.stopping.seconds = seconds;
         const Film film = render(scene, settings, options);
         EXPECT_GE(film.minSampleCount(), 1u);
         EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
