@@ -130,6 +130,7 @@ void visitLeaf(uint item, Query query, RayTransform transform, inout Traversal s
     uint count = ((item & ~kLeafBit) >> kLeafCountShift) + 1u;
     for (uint i = 0u; i < count; ++i) testPrimitive(first + i, query, transform, state);
     budget -= min(budget, count);
+    if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
 }
 
 // Goes on until the walk is finished (stackCount 0) or `budget` steps (node visits and primitive tests) are used up.
@@ -139,6 +140,7 @@ void traverse(Query query, RayTransform transform, inout Traversal state, inout 
         --state.stackCount;
         if (kEveryPrimitive) {
             testPrimitive(state.stackCount, query, transform, state);
+            if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
         } else if (stackEntries[state.stackCount] < state.distance) {
             uint item = stackItems[state.stackCount];
             if ((item & kLeafBit) == 0u) {
@@ -147,7 +149,6 @@ void traverse(Query query, RayTransform transform, inout Traversal state, inout 
                 visitLeaf(item, query, transform, state, budget);
             }
         }
-        if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
     }
 }
 

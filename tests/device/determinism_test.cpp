@@ -128,7 +128,7 @@ TEST_F(Determinism, AnInterruptedRenderKeepsWholeTiles) {
     renderer.render(film, [](double fraction) { return fraction > 0.4 ? Continue::no : Continue::yes; });
     EXPECT_GT(film.minSampleCount(), 0u);
     EXPECT_LT(film.minSampleCount(), settings.sampleCount);
-    for (const PixelStatistics& pixel : film.pixels) EXPECT_EQ(pixel.sampleCount % kBatchSamples, 0u);
+    for (const PixelStatistics& pixel : film.pixels) EXPECT_EQ(pixel.sampleCount % SamplePlan::kLargestPass, 0u);
 }
 
 /// A time limit decides how many samples there are, and nothing else: every pixel has as many, at least one.
