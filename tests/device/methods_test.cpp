@@ -22,7 +22,7 @@ TEST_P(Methods, AgreeWithTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Methods, ::testing::ValuesIn(allMethods()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 /// Without a BVH there is neither an order of boxes nor one of leaves: the same hits, to the last bit.
 TEST_F(Paired, AccelerationChangesNoBit) {
