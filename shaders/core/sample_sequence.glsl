@@ -63,11 +63,12 @@ uint mortonIndex(uvec2 p) {
 
 uvec4 independentBlock(SampleIndex s, uint block) { return philox4x32(uvec4(s.pixel, s.index, block), s.seed); }
 
-uvec2 stratifiedPair(uint within, uint bits, uint key, uvec2 jitter) {
+uvec2 stratifiedPair(uint within, uint bits, uvec2 keys, uvec2 jitter) {
     uint columnBits = (bits + 1u) / 2u;
     uint rowBits = bits - columnBits;
     // Shifts by 32 are undefined: with no bits there is one cell.
-    uint cell = bits == 0u ? 0u : nestedScramble(within << ((32u - bits) & 31u), key) >> ((32u - bits) & 31u);
+    uint shuffled = nestedScramble(within, keys.x);
+    uint cell = bits == 0u ? 0u : bitfieldReverse(laineKarrasHash(shuffled, keys.y)) >> ((32u - bits) & 31u);
     uint column = cell & ((1u << columnBits) - 1u);
     uint row = cell >> columnBits;
     return uvec2(columnBits == 0u ? jitter.x : (column << ((32u - columnBits) & 31u)) | (jitter.x >> columnBits),
@@ -79,7 +80,7 @@ uvec4 stratifiedBlock(SampleIndex s, uint block) {
     uint within = s.index >> kReplicateBits;
     uvec4 jitter = independentBlock(s, block);
     uvec4 keys = keyBlock(s.seed, s.pixel, (s.index & kReplicateMask) + ((within >> bits) << kReplicateBits), block);
-    return uvec4(stratifiedPair(within, bits, keys.x, jitter.xy), stratifiedPair(within, bits, keys.y, jitter.zw));
+    return uvec4(stratifiedPair(within, bits, keys.xz, jitter.xy), stratifiedPair(within, bits, keys.yw, jitter.zw));
 }
 
 uvec4 sobolBlock(SampleIndex s, uint block) {
