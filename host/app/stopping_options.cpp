@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kAdaptiveSamples = 4096;
 
 CLI::Option* addPositive(CLI::App& command, const std::string& name, std::optional<double>& target) {
-    return command.add_option(name, target)->group("Stopping")->check(finiteNumber())->check(CLI::PositiveNumber);
+    return command.add_option(name, target)->group("Stopping")->check(positiveNumber());
 }
 
 CLI::Option* addCount(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target,
