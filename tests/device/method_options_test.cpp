@@ -308,7 +308,7 @@ TEST_P(MethodOptionsOfTest, SampleMapsAreOfTheImagesSize) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, MethodOptionsOfTest, ::testing::Values("vulkan", "reference"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& backend) { return std::string(backend.param); });
 
 // --- Black images of other integrators ---
 
