@@ -4,7 +4,6 @@
 #include "app/validators.h"
 #include "core/error.h"
 #include "core/log.h"
-#include "core/sample_sequence.h"
 #include "scene/pixel_filter.h"
 
 #include <CLI/CLI.hpp>
@@ -175,7 +174,7 @@ void checkBlueNoise(const RenderSettings& settings) {
     const auto pixelBits =
         2 * static_cast<std::uint32_t>(std::bit_width(std::max(settings.width, settings.height) - 1));
     const std::uint64_t samples = std::uint64_t{settings.firstSample} + settings.sampleCount;
-    if (pixelBits + cellBitsFor(samples) <= 32) return;
+    if (pixelBits + cellBitsOf(settings) <= 32) return;
     throwBadInput(
         "--spp", fmt::format("--pixel-sampler sobol-blue-noise has {} samples for each of {} x {} pixels, and "
                              "samples up to {} are asked for: give a lower --spp, or a smaller image",

@@ -71,8 +71,8 @@ void warnOfStopping(const StoppingRule& rule, const RenderSettings& settings) {
                      rule.adaptive->minSamples, settings.sampleCount);
     const bool early = rule.seconds || rule.adaptive || rule.relativeError;
     if (early && settings.sampler == PixelSampler::stratified)
-        spdlog::warn("--pixel-sampler stratified: strata are laid out for {} samples, and those of a render that stops "
-                     "sooner lie in some of them alone; sobol is even at any number",
+        spdlog::warn("--pixel-sampler stratified: strata are laid out for {} samples, too fine for a render that stops "
+                     "sooner; sobol is even at any number",
                      settings.sampleCount);
 }
 
