@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <map>
+
 namespace isolux {
 namespace {
 
@@ -243,6 +245,34 @@ TEST(ReferenceFilm, ATimeLimitEndsTheRenderBetweenPasses) {
     EXPECT_GE(film.minSampleCount(), 1u);
     EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
     EXPECT_GT(last, 0.0);
+}
+
+TEST(ReferenceFilm, PixelsThatAreGoodEnoughTakeNoMoreSamples) {
+    ReferenceOptions options{.signatures = PathSignatures::on};
+    options.stopping.adaptive = AdaptiveRule{.tolerance = 0.2, .batch = 16, .minSamples = 16};
+    const RenderSettings settings = smallSettings(64);
+    const Film film = render(smallRoom(), settings, options);
+    std::map<std::uint64_t, Film> whole;
+    for (const std::uint32_t samples : {16u, 32u, 48u, 64u})
+        whole.emplace(samples, render(smallRoom(), smallSettings(samples), {.signatures = PathSignatures::on}));
+    for (std::size_t i = 0; i < film.pixels.size(); ++i) {
+        const std::uint64_t count = film.pixels[i].sampleCount;
+        ASSERT_EQ(whole.count(count), 1u) << count;
+        ASSERT_EQ(film.pixels[i], whole.at(count).pixels[i]);
+    }
+    EXPECT_EQ(film.minSampleCount(), 16u) << "around the lamp there is no noise";
+    EXPECT_EQ(film.maxSampleCount(), 64u);
+    EXPECT_LT(film.rays, whole.at(64).rays);
+}
+
+TEST(ReferenceFilm, EndsWhenTheImageIsGoodEnough) {
+    ReferenceOptions options;
+    options.stopping.relativeError = 0.1;
+    const Film film = render(smallRoom(), smallSettings(100000), options);
+    EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
+    EXPECT_LE(estimatedRelativeRmse(film), 0.1);
+    const auto count = static_cast<std::uint32_t>(film.maxSampleCount());
+    EXPECT_GT(estimatedRelativeRmse(render(smallRoom(), smallSettings(count - SamplePlan::kLargestPass))), 0.1);
 }
 
 TEST(ReferenceFilm, AnEmptySceneIsBlackAndCounted) {
