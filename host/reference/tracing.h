@@ -45,9 +45,7 @@ struct SampleStream {
 template <typename Real> class Tracing {
 public:
     Tracing(const Scene& scene, const World<Real>& world, const RenderSettings& settings, SideRule sides)
-        : scene_(scene), world_(world),
-          sampler_(settings.sampler), plan_{settings.seed,
-                                            cellBitsFor(std::uint64_t{settings.firstSample} + settings.sampleCount)},
+        : scene_(scene), world_(world), sampler_(settings.sampler), plan_{settings.seed, cellBitsOf(settings)},
           sides_(sides), camera_(scene.cameras[settings.camera], settings), caster_(world, settings.intersection) {}
 
     [[nodiscard]] SampleStream stream(const SampleIndex& index) const { return {sampler_, plan_, index}; }
