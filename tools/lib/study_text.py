@@ -1,0 +1,72 @@
+"""How the study writes numbers; and the parts a section of its page is made of, as plain data."""
+
+import math
+
+NO_BREAK = "\u00a0"
+MINUS = "\u2212"
+
+
+def number(value, digits=3):
+    """With so many significant digits; thousands apart, no exponent down to a millionth."""
+    if value is None:
+        return "–"
+    if value == 0:
+        return "0"
+    decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+    if decimals > 8:
+        text = format(value, f".{digits - 1}e")
+    else:
+        text = format(value, f",.{decimals}f")
+    return text.replace("-", MINUS)
+
+
+def percent(value, digits=3):
+    return "–" if value is None else number(100 * value, digits) + NO_BREAK + "%"
+
+
+def seconds(value, digits=3):
+    return number(value, digits) + NO_BREAK + "s"
+
+
+def interval(values, write=number):
+    """The estimate, with its interval if it has one."""
+    low, estimate, high = values
+    if low is None:
+        return write(estimate)
+    return f"{write(estimate)} [{write(low)},{NO_BREAK}{write(high)}]"
+
+
+def times(value):
+    return "×" + number(value)
+
+
+def flag(measured):
+    """Marks an error against a reference that is not clean enough for it."""
+    return " ⚑" if measured.flagged else ""
+
+
+def pictures_block(caption, items):
+    return {"kind": "pictures", "caption": caption, "items": items}
+
+
+def table_block(caption, head, rows, commands=()):
+    return {"kind": "table", "caption": caption, "head": head, "rows": rows, "commands": list(commands)}
+
+
+def series(name, points, line=True):
+    """`points`: (x, y) or (x, y, low, high)."""
+    return {"name": name, "points": points, "line": line}
+
+
+def chart_block(caption, x, y, lines, commands=()):
+    return {"kind": "chart", "caption": caption, "x": x, "y": y, "series": lines, "commands": list(commands)}
+
+
+def text_block(text):
+    return {"kind": "text", "text": text}
+
+
+def section(name, title, blocks, figures, headlines):
+    """`figures`: what was measured, as numbers; `headlines`: (what, figure) for the table at the top."""
+    return {"name": name, "title": title, "blocks": blocks, "figures": figures,
+            "headlines": [{"what": what, "figure": figure} for what, figure in headlines]}
