@@ -22,14 +22,18 @@ class Axis:
         return self.start + (math.log10(value) - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def ticks(self):
-        """Powers of ten, with 2 and 5 between them where there are few, every n-th where there are many."""
+        """Powers of ten, every n-th where there are many, with digits between them where there are few."""
         powers = range(math.floor(self.low), math.ceil(self.high) + 1)
         inside = [power for power in powers if self.low <= power <= self.high]
         if len(inside) >= 3:
             step = -(-len(inside) // 6)
             return [10.0**power for power in inside[::step]]
-        values = [digit * 10.0**power for power in powers for digit in (1, 2, 5)]
-        return [value for value in values if self.low <= math.log10(value) <= self.high]
+        for digits in ((1, 2, 5), (1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9)):
+            values = [digit * 10.0**power for power in powers for digit in digits]
+            found = [value for value in values if self.low <= math.log10(value) <= self.high]
+            if len(found) >= 3:
+                break
+        return found
 
 
 def tick_text(value):

@@ -23,8 +23,7 @@ def normals_pictures(study):
         run = study.runner.render(study.request(scene, NORMALS, study.effort.normals_spp))
         error, = study.runner.errors([run], study.reference(scene, NORMALS, 64 * study.effort.normals_spp))
         items.append(study.picture(run, scene.stem, error))
-    return pictures_block("Shading normals, (n + 1)/2 as colour. They decide nothing of the light: what is right here is "
-                          "that rays are made, and that they meet triangles and spheres where they should.", items)
+    return pictures_block("Shading normals as colours, (n + 1)/2", items)
 
 
 def timed_spp(study, scene, options):
@@ -49,8 +48,8 @@ def time_scene(study, scene):
 def tests_of(study, scene, method):
     """Box and triangle tests a ray."""
     options = [*NORMALS, "--accel", method, "--count-tests"]
-    report = study.runner.render(study.request(scene, options, 1, size=study.effort.timing_size)).report
-    return [report["boxTests"] / report["rays"], report["primitiveTests"] / report["rays"]]
+    tests = study.runner.render(study.request(scene, options, 1, size=study.effort.timing_size)).report["tests"]
+    return [tests["boxesPerRay"], tests["primitivesPerRay"]]
 
 
 def measure(study, scene):

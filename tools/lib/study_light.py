@@ -3,7 +3,7 @@
 from study_plan import depth, depth_name
 from study_statistics import inefficiency_ratio
 from study_text import (chart_block, flag, interval, number, percent, pictures_block, section, seconds, series, table_block,
-                        text_block, times)
+                        text_block)
 
 METHODS = {"hemisphere": "uniform hemisphere", "light": "light sampling", "mis": "MIS"}
 BEST = "mis"
@@ -59,8 +59,9 @@ def named(measured):
 
 
 def verdict(scene, bounces, figures):
-    parts = [f"{METHODS[method]} {times(figures[method]['timeForErrorOfMis'][1])}" for method in METHODS if method != BEST]
-    return f"{scene.stem}, {depth_name(bounces)}: for the error of MIS one waits {', '.join(parts)} as long."
+    parts = [f"{METHODS[method]} takes {number(figures[method]['timeForErrorOfMis'][1])} times as long"
+             for method in METHODS if method != BEST]
+    return f"{scene.stem}, {depth_name(bounces)}: for the error of MIS {', '.join(parts)}."
 
 
 def light_section(study):

@@ -6,7 +6,7 @@ import html
 
 from study_chart import chart
 from study_style import SCRIPT, STYLE
-from study_text import number, percent, seconds
+from study_text import NO_BREAK, number, percent, seconds
 
 
 def text(value):
@@ -31,7 +31,7 @@ def error_text(item):
     error = f"error {percent(item['relativeRmse'])}"
     if item["flagged"]:
         share = item["referenceShare"]
-        error += " ⚑" + (f"{percent(share, 2)} of it" if share and share > 0 else "")
+        error += f" ⚑{NO_BREAK}{percent(share, 2)}" if share and share > 0 else " ⚑"
     return error
 
 
@@ -44,9 +44,12 @@ def picture(item, output):
 
 
 def reasons(items):
-    """Why what is a stand-in is one, each scene once."""
-    found = {item["scene"]: item["standIn"] for item in items if item["standIn"]}
-    return "".join(f"<p class=standin>{text(scene)} is a stand-in: {text(reason)}.</p>" for scene, reason in found.items())
+    """Why what is a stand-in is one, each reason once."""
+    found = {}
+    for item in items:
+        if item["standIn"]:
+            found.setdefault(item["standIn"], {})[item["scene"]] = True
+    return "".join(f"<p class=standin>Stand-in: {text(', '.join(scenes))}, {text(reason)}.</p>" for reason, scenes in found.items())
 
 
 def choice(name, items, chosen):

@@ -18,7 +18,7 @@ STAND_INS = {
     "blob_standin": f"a body made by a procedure, 196,608 triangles: {ABSENT}",
     "wall-e_standin_dragon202k": f"a dragon of 202,520 triangles: {ABSENT}",
 }
-OWN_SCENE = "one of the project's own scenes: the report's are not at hand"
+OWN_SCENE = "of the project's own scenes: the report's are not at hand"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,7 +93,7 @@ class Effort:
 REDUCED = Effort(size=(32, 32), seeds=3, normals_spp=4, timing_size=(16, 12), timing_repeats=1, timing_seconds=0.05,
                  light_spp=4, light_depths=(FULL_DEPTH,), light_samples=(1, 4), bounce_spp=8, roulette_spp=4,
                  roulette_depths=(2, FULL_DEPTH), ladder=(1, 4, 16, 64), ladder_samples=192, tolerances=(0.2,),
-                 adaptive_max=512, adaptive_seeds=2, gallery_spp=4, reference_spp=1024, long_reference_spp=4096)
+                 adaptive_max=512, adaptive_seeds=2, gallery_spp=4, reference_spp=256, long_reference_spp=1024)
 
 
 class Study:

@@ -18,8 +18,8 @@ nav { display: flex; flex-wrap: wrap; gap: .3rem 1rem; margin: 1rem 0; }
 .block { margin: 1.25rem 0 1.75rem; }
 .scroll { overflow-x: auto; border: 1px solid var(--line); border-radius: 8px; background: var(--card); margin: .6rem 0; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: .88rem; }
-th, td { padding: .4rem .7rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; vertical-align: top; }
-th { color: var(--soft); font-weight: 600; background: var(--tint); white-space: normal; vertical-align: bottom; overflow-wrap: normal; }
+th, td { padding: .4rem .7rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; vertical-align: top; overflow-wrap: break-word; }
+th { color: var(--soft); font-weight: 600; background: var(--tint); white-space: normal; vertical-align: bottom; min-width: 3.6rem; }
 tr:last-child td { border-bottom: 0; }
 th:first-child, td:first-child { text-align: left; position: sticky; left: 0; background: var(--card); }
 th:first-child { background: var(--tint); }
@@ -31,7 +31,7 @@ figure { margin: 0; background: var(--card); border: 1px solid var(--line); bord
 img { display: block; width: 100%; image-rendering: pixelated; background: #000; }
 figcaption { padding: .4rem .6rem .5rem; font-size: .85rem; line-height: 1.35; }
 figcaption span { display: block; color: var(--soft); font-variant-numeric: tabular-nums; }
-figcaption .mark { display: inline; } .mark, .standin { color: var(--warn); }
+figcaption .mark { display: inline; white-space: nowrap; } .mark, .standin { color: var(--warn); }
 .standin { font-size: .87rem; margin: .35rem 0 0; }
 .choices { display: flex; gap: .5rem; justify-content: space-between; font-size: .85rem; color: var(--soft); }
 .choices label { min-width: 0; flex: 1; } .choices label + label { text-align: right; }
@@ -53,7 +53,7 @@ pre { margin: .4rem 0 0; padding: .6rem .7rem; overflow-x: auto; background: var
 @media (max-width: 40rem) {
   .sheet { grid-template-columns: 1fr 1fr; }
   th, td { padding: .35rem .5rem; font-size: .82rem; }
-  td:first-child, th:first-child { max-width: 7.5rem; white-space: normal; } .summary td:first-child { max-width: none; } }
+  td:first-child, th:first-child { min-width: 6.5rem; max-width: 8rem; white-space: normal; } .summary td:first-child { max-width: none; } }
 """
 
 SCRIPT = """

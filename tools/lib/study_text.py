@@ -4,20 +4,19 @@ import math
 
 NO_BREAK = "\u00a0"
 MINUS = "\u2212"
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value, digits=3):
-    """With so many significant digits; thousands apart, no exponent down to a millionth."""
+    """With so many significant digits; whole numbers whole, thousands apart, small numbers with a power of ten."""
     if value is None:
         return "–"
-    if value == 0:
-        return "0"
-    decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
-    if decimals > 8:
-        text = format(value, f".{digits - 1}e")
-    else:
-        text = format(value, f",.{decimals}f")
-    return text.replace("-", MINUS)
+    if value == round(value):
+        return format(round(value), ",").replace("-", MINUS)
+    exponent = math.floor(math.log10(abs(value)))
+    if exponent < -4:
+        return number(value / 10.0**exponent, digits) + f"{NO_BREAK}×{NO_BREAK}10" + str(exponent).translate(SUPERSCRIPT)
+    return format(value, f",.{max(digits - 1 - exponent, 0)}f").replace("-", MINUS)
 
 
 def percent(value, digits=3):
