@@ -1,38 +1,16 @@
 #include "accel/bvh.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
-#include <oneapi/tbb/parallel_reduce.h>
+#include "accel/bvh_split.h"
 
-#include <array>
+#include <oneapi/tbb/parallel_invoke.h>
+
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <numeric>
 
 namespace isolux {
 namespace {
-
-constexpr std::uint32_t kMaxBins = 32;
-constexpr std::uint32_t kParallelThreshold = 4096; // primitives below which a task costs more than it gains
-
-struct Bin {
-    Box3f bounds;
-    std::uint32_t count = 0;
-};
-using Bins = std::array<std::array<Bin, kMaxBins>, 3>;
-
-/// Bounds of a node's boxes and of their centres. Minimum and maximum are exact, so any order gives the same bits.
-struct NodeBounds {
-    Box3f boxes;
-    Box3f centers;
-};
-
-struct Split {
-    int axis = -1; ///< -1: none found
-    std::uint32_t bin = 0;
-    float cost = std::numeric_limits<float>::infinity();
-};
 
 class Builder {
 public:
@@ -63,12 +41,12 @@ private:
     };
 
     void buildSubtree(std::size_t slot, std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
-        const NodeBounds bounds = computeBounds(begin, end);
+        const NodePrimitives primitives{boxes_, std::span(order_).subspan(begin, end - begin)};
+        const NodeBounds bounds = boundsOf(primitives);
         SparseNode& node = sparse_[slot];
-        node = {bounds.boxes, begin, end, 0};
-        const std::uint32_t middle = chooseMiddle(bounds, begin, end, depth);
-        if (middle == begin) return;
-        node.leftCount = middle - begin;
+        node = {bounds.boxes, begin, end, split(primitives, bounds, depth)};
+        if (node.leftCount == 0) return;
+        const std::uint32_t middle = begin + node.leftCount;
         const std::size_t left = slot + 1;
         const std::size_t right = slot + 2 * std::size_t{node.leftCount};
         const auto buildLeft = [&] { buildSubtree(left, begin, middle, depth + 1); };
@@ -81,122 +59,24 @@ private:
         }
     }
 
-    NodeBounds computeBounds(std::uint32_t begin, std::uint32_t end) const {
-        const auto accumulate = [&](const tbb::blocked_range<std::uint32_t>& range, NodeBounds bounds) {
-            for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-                bounds.boxes.extend(boxes_[order_[i]]);
-                bounds.centers.extend(boxes_[order_[i]].center());
-            }
-            return bounds;
-        };
-        const auto join = [](NodeBounds a, const NodeBounds& b) {
-            a.boxes.extend(b.boxes);
-            a.centers.extend(b.centers);
-            return a;
-        };
-        const tbb::blocked_range<std::uint32_t> range(begin, end, kParallelThreshold);
-        if (end - begin <= kParallelThreshold) return accumulate(range, {});
-        return tbb::parallel_reduce(range, NodeBounds{}, accumulate, join);
-    }
-
-    /// Where to split [begin, end), which is partitioned accordingly; `begin` for a leaf.
-    std::uint32_t chooseMiddle(const NodeBounds& bounds, std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
-        const std::uint32_t count = end - begin;
-        if (count == 1) return begin;
+    /// How many primitives go to the left child; 0 for a leaf.
+    [[nodiscard]] std::uint32_t split(const NodePrimitives& node, const NodeBounds& bounds, std::uint32_t depth) const {
+        const auto count = static_cast<std::uint32_t>(node.order.size());
+        const bool leafAllowed = count <= options_.maxLeafSize;
+        const bool divideLeaves = options_.split == SplitMethod::surfaceArea;
+        if (count == 1 || (leafAllowed && !divideLeaves)) return 0;
         const std::uint32_t levelsToHalve = static_cast<std::uint32_t>(std::bit_width(count - 1));
         const bool mustHalve = depth + 1 + levelsToHalve >= depthLimit_;
-        const Split split = mustHalve ? Split{} : findSplit(bounds, begin, end);
-        const float leafCost = static_cast<float>(count);
-        const bool leafAllowed = count <= options_.maxLeafSize;
-        if (split.axis < 0) return leafAllowed ? begin : halve(bounds, begin, end);
-        if (leafAllowed && split.cost >= leafCost) return begin;
-        const auto middle = std::partition(order_.begin() + begin, order_.begin() + end, [&](std::uint32_t primitive) {
-            return binOf(boxes_[primitive].center(), bounds.centers, split.axis) <= split.bin;
-        });
-        return static_cast<std::uint32_t>(middle - order_.begin());
+        const std::uint32_t left = mustHalve ? 0 : splitByMethod(node, bounds);
+        return left > 0 || leafAllowed ? left : splitInHalves(node, bounds);
     }
 
-    std::uint32_t binOf(const Vec3f& center, const Box3f& centers, int axis) const {
-        const float extent = centers.upper[axis] - centers.lower[axis];
-        const float position = (center[axis] - centers.lower[axis]) / extent * static_cast<float>(options_.binCount);
-        return std::min(static_cast<std::uint32_t>(position), options_.binCount - 1);
-    }
-
-    Bins fillBins(const NodeBounds& bounds, std::uint32_t begin, std::uint32_t end) const {
-        const auto accumulate = [&](const tbb::blocked_range<std::uint32_t>& range, Bins bins) {
-            for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-                const Box3f& box = boxes_[order_[i]];
-                const Vec3f center = box.center();
-                for (int axis = 0; axis < 3; ++axis) {
-                    if (!splittable(bounds.centers, axis)) continue;
-                    Bin& bin = bins[static_cast<std::size_t>(axis)][binOf(center, bounds.centers, axis)];
-                    bin.bounds.extend(box);
-                    ++bin.count;
-                }
-            }
-            return bins;
-        };
-        const auto join = [](Bins a, const Bins& b) {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                for (std::size_t i = 0; i < kMaxBins; ++i) {
-                    a[axis][i].bounds.extend(b[axis][i].bounds);
-                    a[axis][i].count += b[axis][i].count;
-                }
-            return a;
-        };
-        const tbb::blocked_range<std::uint32_t> range(begin, end, kParallelThreshold);
-        if (end - begin <= kParallelThreshold) return accumulate(range, {});
-        return tbb::parallel_reduce(range, Bins{}, accumulate, join);
-    }
-
-    /// Bins need an extent whose reciprocal is finite.
-    static bool splittable(const Box3f& centers, int axis) {
-        return centers.upper[axis] - centers.lower[axis] > std::numeric_limits<float>::min();
-    }
-
-    Split findSplit(const NodeBounds& bounds, std::uint32_t begin, std::uint32_t end) const {
-        const Bins bins = fillBins(bounds, begin, end);
-        Split best;
-        const float parentArea = bounds.boxes.halfArea();
-        for (int axis = 0; axis < 3; ++axis)
-            if (splittable(bounds.centers, axis)) sweep(bins[static_cast<std::size_t>(axis)], axis, best);
-        // A flat or point-like node has no area to compare by: any split is as good as another.
-        if (best.axis >= 0) best.cost = parentArea > 0.0f ? 1.0f + best.cost / parentArea : 1.0f;
-        return best;
-    }
-
-    /// Cost (area times count, both sides) of splitting after each bin; keeps the least over all axes.
-    void sweep(const std::array<Bin, kMaxBins>& bins, int axis, Split& best) const {
-        std::array<float, kMaxBins> rightCost{};
-        Bin right;
-        for (std::uint32_t i = options_.binCount - 1; i > 0; --i) {
-            right.bounds.extend(bins[i].bounds);
-            right.count += bins[i].count;
-            rightCost[i] = right.count == 0 ? std::numeric_limits<float>::infinity()
-                                            : right.bounds.halfArea() * static_cast<float>(right.count);
+    [[nodiscard]] std::uint32_t splitByMethod(const NodePrimitives& node, const NodeBounds& bounds) const {
+        switch (options_.split) {
+        case SplitMethod::surfaceArea: return splitBySurfaceArea(node, bounds, options_);
+        case SplitMethod::mean: return splitAtMean(node);
         }
-        Bin left;
-        for (std::uint32_t i = 0; i + 1 < options_.binCount; ++i) {
-            left.bounds.extend(bins[i].bounds);
-            left.count += bins[i].count;
-            if (left.count == 0) continue;
-            const float cost = left.bounds.halfArea() * static_cast<float>(left.count) + rightCost[i + 1];
-            if (cost < best.cost) best = {axis, i, cost};
-        }
-    }
-
-    /// Two equal halves along the longest axis of the centres: always possible, even if all centres are equal.
-    std::uint32_t halve(const NodeBounds& bounds, std::uint32_t begin, std::uint32_t end) {
-        const Vec3f extent = bounds.centers.extent();
-        const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-        const std::uint32_t middle = begin + (end - begin) / 2;
-        std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                         [&](std::uint32_t a, std::uint32_t b) {
-                             const float centerA = boxes_[a].center()[axis];
-                             const float centerB = boxes_[b].center()[axis];
-                             return centerA != centerB ? centerA < centerB : a < b;
-                         });
-        return middle;
+        return 0;
     }
 
     /// Copies the used slots to neighbouring pairs, in depth-first order.

@@ -30,14 +30,15 @@ enum class SplitMethod { surfaceArea, mean };
 struct BvhOptions {
     SplitMethod split = SplitMethod::surfaceArea;
     std::uint32_t maxLeafSize = 4;
-    std::uint32_t binCount = 16;
-    /// No path from the root is longer than this: near it, nodes are halved by count instead of by cost. At least
+    std::uint32_t binCount = 16; ///< of the surface area heuristic
+    /// No path from the root is longer than this: near it, nodes are halved by count instead. At least
     /// 2 + log2 of the number of primitives is always allowed.
     std::uint32_t maxDepth = 48;
 };
 
-/// Builds by the surface area heuristic in bins (Wald 2007, "On fast construction of SAH-based bounding volume
-/// hierarchies"), in parallel; the result does not depend on the number of threads. Boxes must be finite and not empty.
+/// Builds in parallel; the result does not depend on the number of threads. The surface area heuristic is evaluated in
+/// bins (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies"). Boxes must be finite and not
+/// empty.
 [[nodiscard]] Bvh buildBvh(std::span<const Box3f> boxes, const BvhOptions& options = {});
 
 struct BvhStatistics {

@@ -1,5 +1,6 @@
 #include "app/backends.h"
 
+#include "app/method_names.h"
 #include "core/log.h"
 #include "core/stopwatch.h"
 #include "reference/reference.h"
@@ -40,7 +41,8 @@ void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const Ba
     spdlog::debug("device {}: {}", device.description().name, device.description().driverVersion);
     RenderOptions renderOptions;
     renderOptions.aovs = options.aovs;
-    renderOptions.seconds = options.seconds;
+    renderOptions.counts = options.counts;
+    renderOptions.stopping = options.stopping;
     renderOptions.dispatchSeconds = options.dispatchSeconds;
     renderOptions.stage = [&](std::string_view name) { bar.stage(name); };
     PathRenderer renderer(device, run.scene, run.settings, renderOptions);
@@ -63,17 +65,21 @@ void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const
     ReferenceOptions reference;
     reference.precision = options.precision;
     reference.aovs = options.aovs;
-    reference.stopping.seconds = options.seconds;
+    reference.counts = options.counts;
+    reference.stopping = options.stopping;
     film = renderReference(run.scene, run.settings, reference, bar.callback());
 }
 
 } // namespace
 
-SceneRun openScene(const SceneOptions& options, std::uint32_t defaultWidth) {
+SceneRun openScene(const SceneOptions& options, const MethodOptions& methods, std::uint32_t defaultWidth) {
     SceneRun run;
     const ScopedTimer timer(run.loadSeconds);
+    RenderSettings chosen = chosenMethods(methods);
+    chosen.width = defaultWidth;
     run.scene = loadScene(options);
-    run.settings = settingsFor(run.scene, options, defaultWidth);
+    run.settings = settingsFor(run.scene, options, chosen);
+    checkMethods(run.settings, run.scene);
     run.environmentGiven = !options.environment.empty();
     return run;
 }
@@ -87,6 +93,7 @@ RunReport describeRun(const SceneRun& run, const SceneOptions& options) {
     report.firstSample = run.settings.firstSample;
     report.seed = run.settings.seed;
     if (run.settings.maxDepth != kUnlimitedDepth) report.maxDepth = run.settings.maxDepth;
+    report.methods = methodsOf(run.settings);
     report.timings.load = run.loadSeconds;
     report.camera = run.scene.cameras[run.settings.camera].name;
     const Environment& environment = run.scene.environment;

@@ -1,9 +1,11 @@
 // Loading a scene and rendering it with either backend, with the report filled in on the way.
 #pragma once
 
+#include "app/method_options.h"
 #include "app/scene_options.h"
 #include "core/progress.h"
 #include "film/film.h"
+#include "film/sample_plan.h"
 #include "reference/options.h"
 #include "render/path_renderer.h"
 #include "report/run_report.h"
@@ -17,7 +19,8 @@ struct BackendOptions {
     Precision precision = Precision::doublePrecision;
     DeviceOptions device;
     Aovs aovs = Aovs::off;
-    std::optional<double> seconds; ///< time limit of the rendering itself
+    TraversalCounts counts = TraversalCounts::off;
+    StoppingRule stopping;
     double dispatchSeconds = RenderOptions{}.dispatchSeconds;
 };
 
@@ -29,7 +32,8 @@ struct SceneRun {
     double loadSeconds = 0.0;
 };
 
-[[nodiscard]] SceneRun openScene(const SceneOptions& options, std::uint32_t defaultWidth);
+/// Throws Error (bad input) if options do not fit each other or the scene.
+[[nodiscard]] SceneRun openScene(const SceneOptions& options, const MethodOptions& methods, std::uint32_t defaultWidth);
 
 /// A report that knows the scene and the settings.
 [[nodiscard]] RunReport describeRun(const SceneRun& run, const SceneOptions& options);

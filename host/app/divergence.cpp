@@ -19,6 +19,7 @@ public:
         Film film(settings_.width, settings_.height);
         renderer_.render(film, {pixel_.x, pixel_.y, 1, 1}, untilInterrupt);
         RenderSettings settings = settings_;
+        settings.plannedSamples = settings.firstSample + settings.sampleCount; // of the whole render
         settings.firstSample = sample;
         settings.sampleCount = 1;
         settings.maxDepth = maxDepth;

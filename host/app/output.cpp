@@ -14,6 +14,8 @@
 namespace isolux {
 namespace {
 
+constexpr const char* kMeanSamples = "isolux/sampleMean";
+
 /// The options that decide the image, beside the seed and the samples that have entries of their own.
 std::string optionsText(const SceneRun& run, const RunReport& report) {
     const Vec3d& sky = run.scene.environment.radiance;
@@ -21,33 +23,60 @@ std::string optionsText(const SceneRun& run, const RunReport& report) {
                                    run.settings.camera);
     if (run.environmentGiven) text += fmt::format(" --environment {},{},{}", sky.x, sky.y, sky.z);
     if (report.maxDepth) text += fmt::format(" --max-depth {}", *report.maxDepth);
+    for (const MethodChoice& method : report.methods) text += fmt::format(" --{} {}", method.option, method.value);
     if (report.timeLimit) text += fmt::format(" --time {}", *report.timeLimit);
-    return text;
+    if (report.errorTarget) text += fmt::format(" --until-error {}", *report.errorTarget);
+    if (!report.adaptive) return text;
+    const AdaptiveRule& rule = report.adaptive->rule;
+    return text + fmt::format(" --adaptive {} --adaptive-batch {} --adaptive-min {} --spp {}", rule.tolerance,
+                              rule.batch, rule.minSamples, report.adaptive->maximum);
 }
 
 Metadata metadataOf(const SceneRun& run, const RunReport& report) {
     const Camera& camera = run.scene.cameras[run.settings.camera];
     const double aspect = static_cast<double>(run.settings.width) / static_cast<double>(run.settings.height);
-    return {{"worldToCamera", matrixMetadata(cameraFromWorld(camera))},
-            {"worldToNDC", matrixMetadata(ndcFromWorld(camera, aspect))},
-            {"samplesPerPixel", unsignedMetadata(report.samplesPerPixel)},
-            {"renderTimeSeconds", report.timings.render},
-            {"isolux/version", std::string(ISOLUX_VERSION)},
-            {"isolux/seed", unsignedMetadata(report.seed)},
-            {"isolux/sampleFirst", unsignedMetadata(report.firstSample)},
-            {"isolux/sampleCount", unsignedMetadata(report.samplesPerPixel)},
-            {"isolux/sceneHash", report.sceneHash},
-            {"isolux/device", report.deviceName},
-            {"isolux/driver", fmt::format("{} {}", report.driverName, report.driverVersion)},
-            {"isolux/options", optionsText(run, report)}};
+    Metadata metadata{{"worldToCamera", matrixMetadata(cameraFromWorld(camera))},
+                      {"worldToNDC", matrixMetadata(ndcFromWorld(camera, aspect))},
+                      {"samplesPerPixel", unsignedMetadata(report.samplesPerPixel)},
+                      {"renderTimeSeconds", report.timings.render},
+                      {"isolux/version", std::string(ISOLUX_VERSION)},
+                      {"isolux/seed", unsignedMetadata(report.seed)},
+                      {"isolux/sampleFirst", unsignedMetadata(report.firstSample)},
+                      {"isolux/sampleCount", unsignedMetadata(report.samplesPerPixel)},
+                      {"isolux/sceneHash", report.sceneHash},
+                      {"isolux/device", report.deviceName},
+                      {"isolux/driver", fmt::format("{} {}", report.driverName, report.driverVersion)},
+                      {"isolux/options", optionsText(run, report)}};
+    if (report.adaptive) metadata[kMeanSamples] = report.adaptive->mean;
+    return metadata;
+}
+
+/// Of an image whose pixels stop by their error, which makes the least and the most say little.
+std::optional<double> meanSamples(const Metadata& metadata) {
+    const auto mean = metadata.find(kMeanSamples);
+    if (mean == metadata.end() || !std::holds_alternative<double>(mean->second)) return std::nullopt;
+    return std::get<double>(mean->second);
+}
+
+/// Samples a pixel that an image says it holds.
+std::optional<double> samplesHeld(const Metadata& metadata) {
+    if (const std::optional<double> mean = meanSamples(metadata)) return mean;
+    const auto count = metadataUnsigned(metadata, "isolux/sampleCount");
+    if (!count) return std::nullopt;
+    return static_cast<double>(*count);
+}
+
+/// Samples a pixel that count when a render which is not whole is held against a file.
+double samplesFinished(const Film& film, const Metadata& metadata) {
+    return meanSamples(metadata).value_or(static_cast<double>(film.minSampleCount()));
 }
 
 /// Whether the file at `path` may hold more samples than `samples`: it says so, or says nothing of samples.
-bool mayHoldMore(const std::filesystem::path& path, std::uint64_t samples) {
+bool mayHoldMore(const std::filesystem::path& path, double samples) {
     std::error_code error;
     if (!std::filesystem::exists(path, error) && !error) return false;
     try {
-        const auto held = metadataUnsigned(readImage(path).metadata, "isolux/sampleCount");
+        const std::optional<double> held = samplesHeld(readImage(path).metadata);
         return !held || *held > samples;
     } catch (const std::exception&) {
         return true; // not an image of ours, or not to be read: not ours to replace half-done
@@ -95,8 +124,9 @@ void writeOutput(const std::filesystem::path& path, const Image& image, const Di
         writeImage(path, image, display);
         return;
     }
-    const std::filesystem::path target = mayHoldMore(path, film.minSampleCount()) ? partialName(path) : path;
-    if (target != path && mayHoldMore(target, film.minSampleCount()))
+    const double samples = samplesFinished(film, image.metadata);
+    const std::filesystem::path target = mayHoldMore(path, samples) ? partialName(path) : path;
+    if (target != path && mayHoldMore(target, samples))
         throwFailure(path.string(), fmt::format("{}, and {} may hold more samples: nothing was written",
                                                 whatStopped(completion), target.string()));
     writeImage(target, image, display);

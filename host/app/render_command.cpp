@@ -4,11 +4,13 @@
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/scene_options.h"
+#include "app/stopping_options.h"
 #include "app/symptoms.h"
 #include "app/validators.h"
 #include "core/log.h"
 #include "core/platform.h"
 #include "report/format.h"
+#include "report/sample_map.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,13 +24,16 @@ namespace {
 
 struct RenderCommand {
     SceneOptions scene;
+    MethodOptions methods;
+    StoppingOptions stopping;
+    StoppingRule rule; ///< of `stopping`, once it has been checked
     OutputRequest output;
     std::string layers = "variance,samples";
     std::string tonemap = "none";
     std::string backend = "vulkan";
     std::string precision = "double";
     std::string json;
-    std::optional<double> seconds;
+    std::string sampleMap;
     bool samplesGiven = false;
     bool statistics = false;
 };
@@ -41,9 +46,17 @@ BackendOptions backendOptions(const RenderCommand& command) {
     options.precision = command.precision == "float" ? Precision::singlePrecision : Precision::doublePrecision;
     options.device = deviceOptions(command.scene);
     options.aovs = needsAovs(command.output.layers) ? Aovs::on : Aovs::off;
-    options.seconds = command.seconds;
+    options.counts = command.methods.counts();
+    options.stopping = command.rule;
     options.dispatchSeconds = 1e-3 * command.scene.dispatchMilliseconds;
     return options;
+}
+
+void checkSampleMap(const RenderCommand& command) {
+    if (command.sampleMap.empty()) return;
+    checkImagePath(command.sampleMap);
+    for (const std::string& path : command.output.paths)
+        if (path == command.sampleMap) throwBadInput("--sample-map", "it would replace the image");
 }
 
 /// What can be known to be wrong before any work is done.
@@ -58,18 +71,40 @@ void prepare(RenderCommand& command) {
     if (!command.json.empty()) checkTextPath(command.json);
     if (needsAovs(command.output.layers) && !anyExr)
         spdlog::warn("--aov: layers go into .exr files, and none is written");
-    // With a time limit alone there are as many samples as it allows.
-    if (command.seconds && !command.samplesGiven)
-        command.scene.samples = std::numeric_limits<std::uint32_t>::max() - command.scene.firstSample;
+    checkSampleMap(command);
+    command.rule = stoppingRule(command.stopping);
+    if (!command.samplesGiven) command.scene.samples = defaultSamples(command.rule, command.scene);
 }
 
-/// A render is whole when all its samples are taken, or, within a time limit, as many of each pixel.
-Completion completionOf(const Film& film, const RenderSettings& settings, const std::optional<double>& limit,
-                        Completion ending) {
-    const bool whole = limit ? film.minSampleCount() == film.maxSampleCount() && ending == Completion::whole
-                             : film.minSampleCount() == settings.sampleCount;
-    if (whole) return Completion::whole;
+/// Whether a film holds what was asked for, if nothing but the rule has ended its render: all samples or, where
+/// something may stop it sooner, as many of each pixel; adaptive sampling alone leaves pixels with different numbers.
+bool holdsAll(const Film& film, const RenderSettings& settings, const StoppingRule& rule, Completion ending) {
+    if (film.minSampleCount() == settings.sampleCount) return true;
+    if (ending != Completion::whole) return false;
+    if (rule.adaptive) return true;
+    return (rule.seconds || rule.relativeError) && film.minSampleCount() == film.maxSampleCount();
+}
+
+Completion completionOf(const Film& film, const RenderSettings& settings, const StoppingRule& rule, Completion ending) {
+    if (holdsAll(film, settings, rule, ending)) return Completion::whole;
     return ending == Completion::failed ? Completion::failed : Completion::interrupted;
+}
+
+/// What the film and the request add to the report.
+void completeReport(RunReport& report, const Film& film, const SceneRun& scene, const RenderCommand& command) {
+    describeFilm(report, film);
+    report.timeLimit = command.rule.seconds;
+    report.errorTarget = command.rule.relativeError;
+    if (command.rule.adaptive)
+        report.adaptive = summariseAdaptive(film, *command.rule.adaptive, scene.settings.sampleCount);
+    report.layers = layerNames(command.output.layers);
+    report.explanations = explainImage(gatherSymptoms(film, scene));
+}
+
+void warnOfError(const RunReport& report) {
+    if (!report.errorTarget || report.errorTargetReached()) return;
+    spdlog::warn("--until-error {}: not reached after {} samples a pixel, the relative RMSE is estimated as {}",
+                 *report.errorTarget, report.samplesPerPixel, formatNumber(report.quality.relativeRmse));
 }
 
 /// Renders as far as it goes. What was finished before a device is lost or memory runs out is worth keeping: that error
@@ -95,13 +130,19 @@ std::optional<Error> writeAll(const RenderCommand& command, const Film& film, co
     } catch (const Error& error) {
         first = error;
     }
+    try {
+        if (!command.sampleMap.empty()) writeImage(command.sampleMap, sampleMap(film, scene.settings.sampleCount));
+    } catch (const Error& error) {
+        if (!first) first = error;
+    }
     if (!command.json.empty()) writeText(command.json, jsonText(toJson(report)));
     return first;
 }
 
 ExitCode run(RenderCommand command) {
     prepare(command);
-    const SceneRun scene = openScene(command.scene, kDefaultWidth);
+    const SceneRun scene = openScene(command.scene, command.methods, kDefaultWidth);
+    warnOfStopping(command.rule, scene.settings);
     Film film(scene.settings.width, scene.settings.height);
     RunReport report = describeRun(scene, command.scene);
     const std::optional<Error> failure = renderWhatCanBe(film, report, scene, command);
@@ -109,15 +150,13 @@ ExitCode run(RenderCommand command) {
         spdlog::warn("interrupted before the first sample; nothing was written");
         return ExitCode::interrupted;
     }
-    describeFilm(report, film);
-    report.timeLimit = command.seconds;
-    report.layers = layerNames(command.output.layers);
-    report.explanations = explainImage(gatherSymptoms(film, scene));
+    completeReport(report, film, scene, command);
     const Completion ending = failure                ? Completion::failed
                               : interruptRequested() ? Completion::interrupted
                                                      : Completion::whole;
-    const Completion completion = completionOf(film, scene.settings, command.seconds, ending);
+    const Completion completion = completionOf(film, scene.settings, command.rule, ending);
     if (failure) fmt::print(stderr, "isolux: error: {}\n", failure->what());
+    if (completion == Completion::whole) warnOfError(report);
     if (command.statistics || !command.scene.quiet)
         fmt::print("{}", toText(report));
     else
@@ -145,6 +184,8 @@ void addOutputOptions(CLI::App& sub, RenderCommand& command) {
         ->check(CLI::Range(-100.0, 100.0))
         ->capture_default_str();
     sub.add_option("--json", command.json, "Also write the report to this file");
+    sub.add_option("--sample-map", command.sampleMap,
+                   "Also write in false colour how many samples each pixel took: .png, .exr or .hdr");
     sub.add_flag("--stats", command.statistics, "Print the report even with --quiet");
 }
 
@@ -154,10 +195,6 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
     CLI::App* sub = app.add_subcommand("render", "Render a scene to an image");
     auto command = std::make_shared<RenderCommand>();
     addSceneOptions(*sub, command->scene);
-    sub->add_option("--time", command->seconds,
-                    "Stop after about so many seconds of rendering; without --spp that alone decides")
-        ->check(finiteNumber())
-        ->check(CLI::PositiveNumber);
     addOutputOptions(*sub, *command);
     sub->add_option("--backend", command->backend, "What renders")
         ->check(CLI::IsMember({"vulkan", "reference"}))
@@ -165,6 +202,8 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
     sub->add_option("--precision", command->precision, "Of the reference")
         ->check(CLI::IsMember({"double", "float"}))
         ->capture_default_str();
+    addStoppingOptions(*sub, command->stopping);
+    addMethodOptions(*sub, command->methods);
     sub->footer("Ctrl-C keeps what is done: the samples finished so far are written.\n"
                 "Exit codes: 0 done, 1 failed, 2 bad usage or input, 75 try again (device lost, out of memory), "
                 "130 interrupted.\n"
@@ -173,6 +212,9 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
                 "  isolux render scene.gltf -o image.exr --spp 1024 --seed 7 --json report.json\n"
                 "  isolux render scene.gltf -o image.exr --aov all --size 1920x1080 --camera Top\n"
                 "  isolux render scene.gltf -o image.exr --time 60 --environment 0.5,0.6,0.8\n"
+                "  isolux render scene.gltf -o image.exr --adaptive 0.05 --spp 4096 --sample-map samples.png\n"
+                "  isolux render scene.gltf -o image.exr --until-error 0.02 --pixel-sampler sobol\n"
+                "  isolux render scene.gltf -o image.exr --light-sampling light --max-depth 3 --roulette off\n"
                 "  isolux render scene.gltf -o half.exr --spp 512 --first-sample 512\n"
                 "  isolux render scene.gltf -o truth.exr --backend reference --precision double");
     sub->callback([command, sub, &result] {

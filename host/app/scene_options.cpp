@@ -120,11 +120,11 @@ Scene loadScene(const SceneOptions& options) {
     return scene;
 }
 
-RenderSettings settingsFor(const Scene& scene, const SceneOptions& options, std::uint32_t defaultWidth) {
-    RenderSettings settings;
+RenderSettings settingsFor(const Scene& scene, const SceneOptions& options, const RenderSettings& methods) {
+    RenderSettings settings = methods;
     settings.camera = findCamera(scene, options.camera);
     const double aspect = scene.cameras.at(settings.camera).aspectRatio.value_or(4.0 / 3.0);
-    settings.width = options.width.value_or(options.height ? scaledEdge(*options.height * aspect) : defaultWidth);
+    settings.width = options.width.value_or(options.height ? scaledEdge(*options.height * aspect) : methods.width);
     settings.height = options.height.value_or(scaledEdge(settings.width / aspect));
     if (!options.size.empty()) parseSize(options.size, settings);
     settings.seed = options.seed;

@@ -40,10 +40,11 @@ void addSceneOptions(CLI::App& command, SceneOptions& options);
 /// Loads the scene, logs its warnings and puts in the environment that the options give.
 [[nodiscard]] Scene loadScene(const SceneOptions& options);
 
-/// Settings for the camera that the options name: a size that is not given follows from the other by the camera's
-/// aspect ratio, `defaultWidth` if neither is. Throws Error if there is no such camera, or the image or the range of
-/// samples is empty or too large.
-[[nodiscard]] RenderSettings settingsFor(const Scene& scene, const SceneOptions& options, std::uint32_t defaultWidth);
+/// `methods` with the options' camera, size, samples and depth: a size that is not given follows from the other by the
+/// camera's aspect ratio, the width of `methods` if neither is. Throws Error if there is no such camera, or the image
+/// or the range of samples is empty or too large.
+[[nodiscard]] RenderSettings settingsFor(const Scene& scene, const SceneOptions& options,
+                                         const RenderSettings& methods);
 
 [[nodiscard]] DeviceOptions deviceOptions(const SceneOptions& options);
 

@@ -54,12 +54,16 @@ CameraPlace placeOf(const Scene& scene, const Camera& camera) {
 ImageSymptoms gatherSymptoms(const Film& film, const SceneRun& run) {
     ImageSymptoms symptoms = symptomsOf(film);
     symptoms.surfaceCount = primitiveCount(run.scene);
-    if (run.settings.maxDepth != kUnlimitedDepth) symptoms.maxDepth = run.settings.maxDepth;
+    const bool followed = followsLight(run.settings);
+    const std::uint32_t depth = countedBounces(run.settings).last;
+    if (followed && depth != kUnlimitedDepth) symptoms.maxDepth = depth;
     if (symptoms.meanLuminance != 0.0) return symptoms;
+    // Black is a base colour like another, and what leaves a pixel without ambient light is no fault of the scene.
+    if (!followed && symptoms.hitShare > 0.0) symptoms.meanLuminance = std::numeric_limits<double>::quiet_NaN();
     const Camera& camera = run.scene.cameras[run.settings.camera];
     // Those that light nothing here count too: that there is nothing to light is another symptom.
     const std::size_t distant = run.scene.punctualLights.size() + (run.scene.environment.emits() ? 1 : 0);
-    symptoms.lightCount = std::max(buildLightTable(run.scene).lights.size(), distant);
+    symptoms.lightCount = followed ? std::max(buildLightTable(run.scene).lights.size(), distant) : 1;
     symptoms.sceneSide = sideOf(run.scene, camera);
     symptoms.cameraPlace = placeOf(run.scene, camera);
     return symptoms;

@@ -20,6 +20,7 @@ namespace {
 
 struct VerifyCommand {
     SceneOptions scene;
+    MethodOptions methods;
     double tolerance = 1e-3;
     double minAgreement = 0.999;
     double maxRelativeBias = 1e-4;
@@ -50,7 +51,7 @@ bool passes(const Outcome& outcome, const VerifyCommand& command) {
 }
 
 std::optional<Outcome> compareBackends(const VerifyCommand& command) {
-    const SceneRun run = openScene(command.scene, kDefaultWidth);
+    const SceneRun run = openScene(command.scene, command.methods, kDefaultWidth);
     const ProgressDisplay display = progressDisplay(command.scene);
     const Device device(deviceOptions(command.scene));
     RenderOptions options;
@@ -136,6 +137,7 @@ void addVerifyCommand(CLI::App& app, ExitCode& result) {
     auto command = std::make_shared<VerifyCommand>();
     command->scene.samples = 16;
     addSceneOptions(*sub, command->scene);
+    addMethodOptions(*sub, command->methods);
     sub->add_option("--tolerance", command->tolerance, "Relative difference that rounding may cause in a pixel")
         ->check(finiteNumber())
         ->capture_default_str();
@@ -151,7 +153,8 @@ void addVerifyCommand(CLI::App& app, ExitCode& result) {
         "another branch; path signatures tell which. Exit code 0: they agree; 1: they do not.\n"
         "Examples:\n"
         "  isolux verify scene.glb\n"
-        "  isolux verify scene.glb --width 128 --spp 64 --seed 3");
+        "  isolux verify scene.glb --width 128 --spp 64 --seed 3\n"
+        "  isolux verify scene.glb --light-choice all --pixel-sampler sobol");
     sub->callback([command, &result] { result = run(*command); });
 }
 

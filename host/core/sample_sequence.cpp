@@ -95,7 +95,9 @@ PhiloxBlock stratifiedBlock(const SequencePlan& plan, const SampleIndex& index, 
         keyBlock(plan, index.x, index.y, (index.sample & kReplicateMask) + (round << kReplicateBits), block);
     PhiloxBlock words{};
     for (std::size_t pair = 0; pair < 2; ++pair) {
-        const std::uint32_t cell = bits == 0 ? 0 : nestedScramble(within << (32 - bits), keys[pair]) >> (32 - bits);
+        const std::uint32_t shuffled = nestedScramble(within, keys[pair]);
+        const std::uint32_t cell =
+            bits == 0 ? 0 : reverseBits(laineKarrasHash(shuffled, keys[2 + pair])) >> (32 - bits);
         const std::uint32_t column = cell & ((1u << columnBits) - 1);
         words[2 * pair] = withinCell(column, columnBits, jitter[2 * pair]);
         words[2 * pair + 1] = withinCell(cell >> columnBits, bits - columnBits, jitter[2 * pair + 1]);

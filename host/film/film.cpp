@@ -1,6 +1,9 @@
 #include "film/film.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
 
 namespace isolux {
 
@@ -70,6 +73,42 @@ void Diagnostics::merge(const Diagnostics& other) {
     invalidIndices += other.invalidIndices;
 }
 
+void PixelReplicates::add(std::uint32_t sample, const Vec3d& radiance) {
+    sum[sample % kCount] += radiance;
+    ++sampleCount[sample % kCount];
+}
+
+void PixelReplicates::refine(PixelStatistics& pixel) const {
+    Vec3d total(0.0);
+    std::uint64_t samples = 0;
+    std::uint32_t replicates = 0;
+    for (std::uint32_t r = 0; r < kCount; ++r) {
+        total += sum[r];
+        samples += sampleCount[r];
+        if (sampleCount[r] > 0) ++replicates;
+    }
+    if (replicates < 2) return;
+    const Vec3d mean = total / static_cast<double>(samples);
+    Vec3d scatter(0.0);
+    double luminanceScatter = 0.0;
+    for (std::uint32_t r = 0; r < kCount; ++r) {
+        if (sampleCount[r] == 0) continue;
+        const double count = sampleCount[r];
+        const Vec3d deviation = sum[r] / count - mean;
+        scatter += count * deviation * deviation;
+        luminanceScatter += count * luminance(deviation) * luminance(deviation);
+    }
+    // PixelStatistics divides by samples - 1, as for independent samples.
+    const double toSamples = static_cast<double>(pixel.sampleCount - 1) / static_cast<double>(replicates - 1);
+    pixel.squaredDeviation = scatter * toSamples;
+    pixel.luminanceSquaredDeviation = luminanceScatter * toSamples;
+}
+
+void Film::refineVariance() {
+    assert(replicates.empty() || replicates.size() == pixels.size());
+    for (std::size_t i = 0; i < replicates.size(); ++i) replicates[i].refine(pixels[i]);
+}
+
 std::uint64_t Film::minSampleCount() const {
     std::uint64_t least = pixels.empty() ? 0 : pixels.front().sampleCount;
     for (const PixelStatistics& pixel : pixels) least = std::min(least, pixel.sampleCount);
@@ -80,6 +119,17 @@ std::uint64_t Film::maxSampleCount() const {
     std::uint64_t most = 0;
     for (const PixelStatistics& pixel : pixels) most = std::max(most, pixel.sampleCount);
     return most;
+}
+
+double estimatedRelativeRmse(const Film& film) {
+    double luminanceSum = 0.0;
+    double varianceSum = 0.0; // of the pixels' means
+    for (const PixelStatistics& pixel : film.pixels) {
+        if (pixel.sampleCount < 2) return std::numeric_limits<double>::quiet_NaN();
+        luminanceSum += luminance(pixel.mean);
+        varianceSum += pixel.luminanceVariance() / static_cast<double>(pixel.sampleCount);
+    }
+    return std::sqrt(varianceSum * static_cast<double>(film.pixels.size())) / luminanceSum;
 }
 
 } // namespace isolux

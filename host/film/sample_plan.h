@@ -13,11 +13,14 @@
 namespace isolux {
 
 /// When a pixel has samples enough: 1.96 sigma / sqrt(n) <= tolerance * mean, of luminance, in the pixel and in each of
-/// its eight neighbours. Tested after `minSamples`, and then after every `batch` more. Stopping so is biased (Kirk and
-/// Arvo 1991): README.md has the figures.
+/// its eight neighbours. Tested after `minSamples`, and then after every `batch` more. A black pixel whose camera rays
+/// met something must wait for kBlackPatience times as many samples, as 0 <= 0 says nothing about light that few
+/// samples find. Stopping so is biased (Kirk and Arvo 1991): README.md has the figures.
 struct AdaptiveRule {
+    static constexpr std::uint32_t kBlackPatience = 16;
+
     double tolerance = 0.05;
-    std::uint32_t batch = 32;
+    std::uint32_t batch = 32; ///< at least 1
     std::uint32_t minSamples = 64;
 };
 
@@ -25,7 +28,8 @@ struct AdaptiveRule {
 struct StoppingRule {
     std::optional<double> seconds; ///< stop after about this time, at least one sample a pixel
     std::optional<AdaptiveRule> adaptive;
-    std::optional<double> relativeError; ///< stop when estimatedRelativeRmse(film) is at most this
+    /// Stop when estimatedRelativeRmse(film) is at most this; judged after each pass from 16 samples on. NaN never is.
+    std::optional<double> relativeError;
 };
 
 /// A pixel of a film: x in the lower 16 bits, y in the upper.
@@ -56,17 +60,20 @@ public:
     SamplePlan(const StoppingRule& rule, const SampleRange& samples, FirstPasses firstPasses,
                std::vector<std::uint32_t> pixels);
 
-    /// The next pass, judged by what `film` holds after the one before; nothing when all is done. All pixels of a pass
-    /// have taken the same samples so far.
+    /// The next pass, judged by what `film` holds after the one before, its variance refined; nothing when all is done.
+    /// All pixels of a pass have taken the same samples so far.
     [[nodiscard]] std::optional<Pass> next(const Film& film);
 
-    /// How much of the work is done when `part` of the current pass is: of the samples or of the time, whichever ends
-    /// first; in [0, 1].
+    /// How much of the work is done when `part` of the current pass is: of the samples that pixels still active may
+    /// take, of the time, or of what the error takes to fall, whichever ends first; in [0, 1], and never less than
+    /// before.
     [[nodiscard]] double fraction(double part) const;
 
 private:
+    void judgeError(const Film& film);
     void dropFinishedPixels(const Film& film);
     [[nodiscard]] std::uint32_t samplesUntilTest() const;
+    [[nodiscard]] std::uint32_t nextPassSamples() const;
 
     StoppingRule rule_;
     SampleRange samples_;
@@ -75,10 +82,12 @@ private:
     std::vector<std::uint32_t> pixels_; ///< still active
     std::uint32_t done_ = 0;            ///< samples that every active pixel has taken
     std::uint32_t passSamples_ = 0;     ///< of the current pass
+    std::uint64_t taken_ = 0;           ///< samples of all pixels
+    double errorFraction_ = 0.0;        ///< (wanted error / error)^2: the error falls with the root of the samples
 };
 
 /// Which pixels satisfy the rule, they and their neighbours; `film.width * film.height` entries, row by row. A pixel
 /// without two samples satisfies nothing; one outside the film is no neighbour.
-[[nodiscard]] std::vector<bool> satisfiedPixels(const Film& film, double tolerance);
+[[nodiscard]] std::vector<bool> satisfiedPixels(const Film& film, const AdaptiveRule& rule);
 
 } // namespace isolux

@@ -13,7 +13,7 @@ namespace isolux {
 namespace {
 
 constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_2;
-constexpr std::uint32_t kStorageBuffersNeeded = 9;
+constexpr std::uint32_t kStorageBuffersNeeded = 11;
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 void loadVulkan() {

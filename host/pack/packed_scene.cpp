@@ -3,12 +3,15 @@
 #include "accel/wide_bvh.h"
 #include "core/error.h"
 #include "scene/lights.h"
+#include "scene/pixel_filter.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <numeric>
 
 namespace isolux {
 namespace {
@@ -55,7 +58,8 @@ Mat3d normalMatrix(const Mat4d& m) {
 
 class Packer {
 public:
-    explicit Packer(const Scene& scene) : scene_(scene), lights_(buildLightTable(scene)) {
+    Packer(const Scene& scene, const RenderSettings& settings)
+        : scene_(scene), settings_(settings), lights_(buildLightTable(scene, settings)) {
         packed_.space = chooseSpace(worldBounds(scene));
         const double brightest = brightestLight();
         if (brightest > 0.0) packed_.radianceScale = std::exp2(-std::ceil(std::log2(brightest)));
@@ -68,12 +72,9 @@ public:
                                                    WideChild::kMaxFirst - 1));
         for (const Instance& instance : scene_.instances) addInstance(instance);
         for (const Sphere& sphere : scene_.spheres) addSphere(sphere);
-        const Bvh bvh = buildBvh(primitives_.boxes);
-        packed_.bvh = statistics(bvh);
-        const WideBvh wide = buildWideBvh(bvh);
-        addNodes(wide);
-        orderByLeaves(wide.primitives);
-        addTables(wide.primitives);
+        const std::vector<std::uint32_t> order = arrange();
+        orderPrimitives(order);
+        addTables(order);
         return std::move(packed_);
     }
 
@@ -143,6 +144,24 @@ private:
         primitives_.boxes.push_back(box);
     }
 
+    /// The primitives in the order in which they are packed: that of the BVH's leaves, or of the scene without one.
+    std::vector<std::uint32_t> arrange() {
+        const IntersectionMethod& method = settings_.intersection;
+        if (method.acceleration == Acceleration::none) {
+            std::vector<std::uint32_t> order(primitives_.records.size());
+            std::iota(order.begin(), order.end(), 0u);
+            return order;
+        }
+        BvhOptions options;
+        options.split = method.acceleration == Acceleration::meanSplit ? SplitMethod::mean : SplitMethod::surfaceArea;
+        options.maxLeafSize = method.maxLeafSize;
+        const Bvh bvh = buildBvh(primitives_.boxes, options);
+        packed_.bvh = statistics(bvh);
+        const WideBvh wide = buildWideBvh(bvh);
+        addNodes(wide);
+        return wide.primitives;
+    }
+
     void addNodes(const WideBvh& wide) {
         packed_.stackBound = wide.stackBound;
         packed_.nodes.reserve(wide.nodes.size());
@@ -162,7 +181,7 @@ private:
         }
     }
 
-    void orderByLeaves(const std::vector<std::uint32_t>& order) {
+    void orderPrimitives(const std::vector<std::uint32_t>& order) {
         packed_.primitives.reserve(order.size());
         for (const std::uint32_t id : order) packed_.primitives.push_back(primitives_.records[id]);
         packed_.normals.reserve(order.size());
@@ -180,11 +199,24 @@ private:
         for (std::uint32_t i = 0; i < order.size(); ++i) indexOfId[order[i]] = i;
         for (std::uint32_t light = 0; light < packed_.lightCount; ++light) append(lightRecord(light, indexOfId));
         if (lights_.environment != kNoLight)
-            packed_.environmentPdf = lights_.choice.pdf[lights_.environment] / scene_.environment.solidAngle();
+            packed_.environmentPdf = lights_.samplesOf[lights_.environment] / scene_.environment.solidAngle();
+        packed_.lightSamples = lights_.sampleCount;
+        packed_.samplesPerArea = lights_.samplesPerArea;
+        packed_.areaLights = lights_.areaCount;
+        packed_.punctualLights = lights_.punctualCount;
         packed_.lightBits = lights_.choice.bits;
         packed_.binOffset = static_cast<std::uint32_t>(packed_.tables.size());
         for (const AliasTable::Bin& bin : lights_.choice.bins)
             append(shared::LightBinRecord{{bin.threshold, bin.alias, 0, 0}});
+        packed_.filterOffset = static_cast<std::uint32_t>(packed_.tables.size());
+        if (settings_.filter.kind != PixelFilter::box) addFilter();
+    }
+
+    void addFilter() {
+        const FilterTable table = buildFilterTable(settings_.filter);
+        const auto& q = table.quantiles;
+        for (std::size_t cell = 0; cell < kFilterCells; cell += 2)
+            append(shared::FilterCellsRecord{{q[cell], q[cell + 1], q[cell + 1], q[cell + 2]}});
     }
 
     shared::LightRecord lightRecord(std::uint32_t light, const std::vector<std::uint32_t>& indexOfId) const {
@@ -192,7 +224,7 @@ private:
         shared::LightRecord record = source.kind == LightKind::area       ? areaLight(source.index, indexOfId)
                                      : source.kind == LightKind::punctual ? punctualLight(source.index)
                                                                           : environmentLight();
-        record.p1Choice.w = static_cast<float>(lights_.choice.pdf[light]);
+        record.p1Samples.w = static_cast<float>(lights_.samplesOf[light]);
         return record;
     }
 
@@ -248,14 +280,24 @@ private:
     }
 
     const Scene& scene_;
+    const RenderSettings& settings_;
     LightTable lights_;
     Primitives primitives_;
     PackedScene packed_;
 };
 
+/// RenderParameters::methods, lengths in device space.
+glm::vec4 packMethods(const DeviceSpace& space, const RenderSettings& settings) {
+    constexpr double kLargest = std::numeric_limits<float>::max(); // stands for "endless" on the device
+    return {static_cast<float>(0.5 * settings.lens.aperture * space.scale),
+            static_cast<float>(1.0 / (settings.lens.focus * space.scale)),
+            static_cast<float>(1.0 - settings.roulette.termination),
+            static_cast<float>(std::min(settings.ambientDistance * space.scale, kLargest))};
+}
+
 } // namespace
 
-PackedScene packScene(const Scene& scene) { return Packer(scene).pack(); }
+PackedScene packScene(const Scene& scene, const RenderSettings& settings) { return Packer(scene, settings).pack(); }
 
 shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene, const RenderSettings& settings) {
     const Camera& camera = scene.cameras.at(settings.camera);
@@ -267,15 +309,22 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.cameraRight = word(Vec3f(camera.worldFromCamera[0] * (halfHeight * aspect)), 0.0f);
     parameters.cameraUp = word(Vec3f(camera.worldFromCamera[1] * halfHeight), 0.0f);
     parameters.cameraForward = word(Vec3f(-camera.worldFromCamera[2]), 0.0f);
+    parameters.lensRight = word(Vec3f(camera.worldFromCamera[0]), 0.0f);
+    parameters.lensUp = word(Vec3f(camera.worldFromCamera[1]), 0.0f);
+    parameters.methods = packMethods(packed.space, settings);
     const Environment& environment = scene.environment;
     parameters.environment =
         word(Vec3f(environment.radiance * packed.radianceScale), static_cast<float>(packed.environmentPdf));
     parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};
-    parameters.depthLights = {settings.maxDepth, settings.roulette.start, packed.lightBits, packed.lightCount};
-    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, 0};
-    parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()), 0, packed.materialCount, 0};
+    const BounceRange bounces = countedBounces(settings);
+    parameters.depthLights = {bounces.last, settings.roulette.start, packed.lightBits, packed.lightCount};
+    parameters.lightSamples = {packed.lightSamples, packed.samplesPerArea, packed.areaLights, packed.punctualLights};
+    parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, packed.filterOffset};
+    parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()),
+                              static_cast<std::uint32_t>(packed.primitives.size()), packed.materialCount, 0};
+    parameters.sampling = {bounces.first, cellBitsOf(settings), 0, 0};
     return parameters;
 }
 

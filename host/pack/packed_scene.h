@@ -26,13 +26,19 @@ struct PackedScene {
     std::vector<shared::NodeRecord> nodes;
     std::vector<shared::PrimitiveRecord> primitives; ///< in the order of the BVH's leaves
     std::vector<shared::NormalRecord> normals;       ///< beside `primitives`; zero where a mesh is flat
-    std::vector<glm::uvec4> tables;                  ///< materials, lights, light bins, one after the other
+    std::vector<glm::uvec4> tables;                  ///< materials, lights, light bins, filter, one after the other
     std::uint32_t materialCount = 0;
     std::uint32_t lightCount = 0;
     std::uint32_t lightBits = 0;
-    std::uint32_t lightOffset = 0; ///< first word of the lights in `tables`
-    std::uint32_t binOffset = 0;   ///< first word of the light bins
-    double environmentPdf = 0.0;   ///< of light sampling, per solid angle; 0 if it never chooses the environment
+    std::uint32_t lightOffset = 0;  ///< first word of the lights in `tables`
+    std::uint32_t binOffset = 0;    ///< first word of the light bins
+    std::uint32_t filterOffset = 0; ///< first word of the pixel filter's quantiles
+    /// How many light samples a shading point takes, and how they are dealt out (LightTable).
+    std::uint32_t lightSamples = 0;
+    std::uint32_t samplesPerArea = 1;
+    std::uint32_t areaLights = 0;
+    std::uint32_t punctualLights = 0;
+    double environmentPdf = 0.0; ///< density of light samples per solid angle; 0 if they never go to the environment
     std::vector<std::uint32_t> firstOfObject; ///< first primitive id of each instance and each sphere, in scene order
     std::uint32_t stackBound = 1;             ///< entries a traversal stack must hold
     /// Device radiance = this * world radiance: a power of two that brings the brightest light near 1, so that squares
@@ -42,9 +48,9 @@ struct PackedScene {
     DeviceSpace space;
 };
 
-/// Transforms in double, builds the BVH over the rounded vertices and packs everything. Throws Error if the scene
-/// has more primitives than a child slot can name (2^28 - 1).
-[[nodiscard]] PackedScene packScene(const Scene& scene);
+/// Transforms in double, builds the BVH over the rounded vertices, unless the settings want none, and packs everything.
+/// Throws Error if the scene has more primitives than a child slot can name (2^28 - 1).
+[[nodiscard]] PackedScene packScene(const Scene& scene, const RenderSettings& settings = {});
 
 /// The parameters that stay the same over a render.
 [[nodiscard]] shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene,

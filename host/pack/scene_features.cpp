@@ -26,13 +26,15 @@ SceneFeatures findFeatures(const Scene& scene, const RenderSettings& settings) {
     features.spheres = !scene.spheres.empty();
     features.smoothNormals = std::any_of(scene.instances.begin(), scene.instances.end(),
                                          [&](const Instance& instance) { return isSmooth(scene, instance); });
-    // A path of maxDepth bounces is never asked whether to make bounce maxDepth + 1.
-    features.roulette = settings.maxDepth >= settings.roulette.start;
-    const LightTable lights = buildLightTable(scene);
+    // A path of the last bounce is never asked whether to make another.
+    const bool asked = followsLight(settings) && countedBounces(settings).last >= settings.roulette.start;
+    features.roulette = asked ? settings.roulette.kind : Roulette::off;
+    const LightTable lights = buildLightTable(scene, settings);
     features.lights = countLights(lights);
     features.areaLights = hasKind(lights, LightKind::area);
     features.punctualLights = hasKind(lights, LightKind::punctual);
-    features.environment = scene.environment.emits(); // seen, even if there is nothing that it could light
+    features.environment =
+        followsLight(settings) && scene.environment.emits(); // seen, even if there is nothing that it could light
     return features;
 }
 

@@ -14,7 +14,7 @@ enum class LightCount : std::uint32_t { none, one, many };
 struct SceneFeatures {
     bool spheres = true;
     bool smoothNormals = true;
-    bool roulette = true;
+    Roulette roulette = Roulette::throughput; ///< `off` also where no path is long enough
     LightCount lights = LightCount::many;
     bool areaLights = true;
     bool punctualLights = true;

@@ -68,8 +68,8 @@ template <typename Real> struct TriangleHit {
 
 /// The hit in front of the origin, at any distance; either side. A triangle without area is never hit.
 template <typename Real>
-[[nodiscard]] std::optional<TriangleHit<Real>> intersectTriangle(const RayView<Real>& ray,
-                                                                 const WorldTriangle<Real>& triangle) {
+[[nodiscard]] std::optional<TriangleHit<Real>> intersectWatertight(const RayView<Real>& ray,
+                                                                   const WorldTriangle<Real>& triangle) {
     const Vec3<Real> p0 = ray.project(triangle.positions[0]);
     const Vec3<Real> p1 = ray.project(triangle.positions[1]);
     const Vec3<Real> p2 = ray.project(triangle.positions[2]);
@@ -80,6 +80,26 @@ template <typename Real>
     const Real t = planeDistance(ray, triangle);
     if (!(t > 0)) return std::nullopt;
     return TriangleHit<Real>{t, volumes / sum};
+}
+
+/// The same by Möller and Trumbore 1997 ("Fast, minimum storage ray/triangle intersection"), on whose rounding nothing
+/// is known: neighbours may both miss their edge.
+template <typename Real>
+[[nodiscard]] std::optional<TriangleHit<Real>> intersectMollerTrumbore(const Ray<Real>& ray,
+                                                                       const WorldTriangle<Real>& triangle) {
+    const Vec3<Real> e1 = triangle.positions[1] - triangle.positions[0];
+    const Vec3<Real> e2 = triangle.positions[2] - triangle.positions[0];
+    const Vec3<Real> s = ray.origin - triangle.positions[0];
+    const Vec3<Real> s1 = glm::cross(ray.direction, e2);
+    const Vec3<Real> s2 = glm::cross(s, e1);
+    const Real determinant = glm::dot(s1, e1);
+    if (determinant == 0 || triangle.area == 0) return std::nullopt;
+    const Real b1 = glm::dot(s1, s) / determinant;
+    const Real b2 = glm::dot(s2, ray.direction) / determinant;
+    const Real t = glm::dot(s2, e2) / determinant;
+    const bool inside = b1 >= 0 && b2 >= 0 && b1 + b2 <= 1;
+    if (!inside || !(t > 0)) return std::nullopt;
+    return TriangleHit<Real>{t, {1 - b1 - b2, b1, b2}};
 }
 
 /// Distance to the nearest crossing in front of the origin, from outside or inside. Haines, Günther and Akenine-Möller

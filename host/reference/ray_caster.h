@@ -22,21 +22,40 @@ template <typename Real> struct Hit {
 
 enum class Visibility { clear, blocked };
 
-/// Keeps a reference to the world. Both kinds of search give the same answers bit by bit: a hit's distance is clamped
-/// to the part of the ray in its primitive's box, so no node that holds it is ever passed over, and of hits at equal
-/// distance the lowest primitive id wins.
+/// What searches cost.
+struct TraversalTests {
+    std::uint64_t boxes = 0; ///< of nodes
+    std::uint64_t primitives = 0;
+
+    void merge(const TraversalTests& other) {
+        boxes += other.boxes;
+        primitives += other.primitives;
+    }
+};
+
+/// Keeps a reference to the world. Every acceleration gives the same answers bit by bit: a hit's distance is clamped to
+/// the part of the ray in its primitive's box, so no node that holds it is ever passed over, and of hits at equal
+/// distance the lowest primitive id wins. Every search adds its tests to `tests`.
 template <typename Real> class RayCaster {
 public:
     explicit RayCaster(const World<Real>& world, const IntersectionMethod& method = {})
         : world_(world), method_(method) {
-        if (method.acceleration != Acceleration::none) bvh_ = buildBvh(world.boxes);
+        if (method.acceleration == Acceleration::none) return;
+        const bool byMean = method.acceleration == Acceleration::meanSplit;
+        const SplitMethod split = byMean ? SplitMethod::mean : SplitMethod::surfaceArea;
+        bvh_ = buildBvh(world.boxes, {.split = split, .maxLeafSize = method.maxLeafSize});
     }
 
     [[nodiscard]] std::optional<Hit<Real>> nearest(const Ray<Real>& ray) const {
+        TraversalTests unused;
+        return nearest(ray, unused);
+    }
+    [[nodiscard]] std::optional<Hit<Real>> nearest(const Ray<Real>& ray, TraversalTests& tests) const {
         const RayView<Real> view(ray);
         Hit<Real> best;
         best.t = ray.tMax;
-        forEachCandidate(ray, [&](std::uint32_t primitive) {
+        forEachCandidate(ray, tests, [&](std::uint32_t primitive) {
+            ++tests.primitives;
             const std::optional<Hit<Real>> hit = intersect(ray, view, primitive);
             if (hit && (hit->t < best.t || (hit->t == best.t && primitive < best.primitive))) best = *hit;
             return best.t;
@@ -46,10 +65,16 @@ public:
 
     /// Whether anything but the primitive `ignored` lies before `ray.tMax`.
     [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored) const {
+        TraversalTests unused;
+        return visibility(ray, ignored, unused);
+    }
+    [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored, TraversalTests& tests) const {
         const RayView<Real> view(ray);
         Visibility visibility = Visibility::clear;
-        forEachCandidate(ray, [&](std::uint32_t primitive) {
-            if (primitive == ignored || !intersect(ray, view, primitive)) return ray.tMax;
+        forEachCandidate(ray, tests, [&](std::uint32_t primitive) {
+            if (primitive == ignored) return ray.tMax;
+            ++tests.primitives;
+            if (!intersect(ray, view, primitive)) return ray.tMax;
             visibility = Visibility::blocked;
             return kStop;
         });
@@ -63,13 +88,19 @@ private:
     };
     static constexpr Real kStop = -1;
 
+    [[nodiscard]] std::optional<TriangleHit<Real>> intersectTriangle(const Ray<Real>& ray, const RayView<Real>& view,
+                                                                     const WorldTriangle<Real>& triangle) const {
+        const bool watertight = method_.triangleTest == TriangleTest::watertight;
+        return watertight ? intersectWatertight(view, triangle) : intersectMollerTrumbore(ray, triangle);
+    }
+
     /// A hit before `ray.tMax`.
     [[nodiscard]] std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const RayView<Real>& view,
                                                      std::uint32_t primitive) const {
         Hit<Real> hit;
         hit.primitive = primitive;
         if (world_.isTriangle(primitive)) {
-            const auto triangleHit = intersectTriangle(view, world_.triangles[primitive]);
+            const auto triangleHit = intersectTriangle(ray, view, world_.triangles[primitive]);
             if (!triangleHit) return std::nullopt;
             hit.t = triangleHit->t;
             hit.barycentric = triangleHit->barycentric;
@@ -86,17 +117,20 @@ private:
 
     /// Calls `visit` with primitives that the ray may hit. It returns the distance beyond which no hit matters any
     /// more, and `kStop` to end the search.
-    template <typename Visit> void forEachCandidate(const Ray<Real>& ray, const Visit& visit) const {
+    template <typename Visit>
+    void forEachCandidate(const Ray<Real>& ray, TraversalTests& tests, const Visit& visit) const {
         if (method_.acceleration != Acceleration::none) {
-            walkBvh(ray, visit);
+            tests.boxes += walkBvh(ray, visit);
             return;
         }
         for (std::uint32_t primitive = 0; primitive < world_.primitiveCount(); ++primitive)
             if (visit(primitive) == kStop) return;
     }
 
-    template <typename Visit> void walkBvh(const Ray<Real>& ray, const Visit& visit) const {
-        if (bvh_.nodes.empty()) return;
+    /// The number of boxes tested.
+    template <typename Visit> std::uint64_t walkBvh(const Ray<Real>& ray, const Visit& visit) const {
+        if (bvh_.nodes.empty()) return 0;
+        std::uint64_t boxes = 1;
         Real tMax = ray.tMax;
         std::vector<Entry> stack;
         stack.reserve(std::size_t{bvh_.depth} + 2);
@@ -109,8 +143,11 @@ private:
             const Bvh::Node& node = bvh_.nodes[entry.node];
             for (std::uint32_t i = node.first; i < node.first + node.count && tMax != kStop; ++i)
                 tMax = visit(bvh_.primitives[i]);
-            if (node.count == 0) pushChildren(stack, ray, node.first);
+            if (node.count > 0) continue;
+            pushChildren(stack, ray, node.first);
+            boxes += 2;
         }
+        return boxes;
     }
 
     /// Pushes the nearer child last, so that it is visited first.

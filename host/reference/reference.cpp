@@ -2,28 +2,28 @@
 #include "reference/reference.h"
 
 #include "core/error.h"
-#include "core/pacing.h"
+#include "reference/first_hit.h"
 #include "reference/path.h"
 
-#include <oneapi/tbb/blocked_range2d.h>
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/combinable.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace isolux {
 namespace {
 
-constexpr std::uint32_t kLargestPass = 16; // samples a pixel
-constexpr std::size_t kTileSize = 8;       // pixels: paths differ in length by orders of magnitude
+constexpr std::size_t kGrain = 32; // pixels of a task: paths differ in length by orders of magnitude
 
 /// Counts that threads gather apart from each other; integers, so their sum does not depend on the order.
 struct Counts {
     std::uint64_t rays = 0;
+    TraversalTests tests;
     Diagnostics diagnostics;
 };
 
@@ -32,65 +32,81 @@ void diagnose(const Vec3d& radiance, Diagnostics& diagnostics) {
     if (glm::any(glm::lessThan(radiance, Vec3d(0.0)))) ++diagnostics.negativeSamples;
 }
 
-template <typename Real>
-void addSample(PixelStatistics& pixel, const PathResult<Real>& path, PathSignatures signatures) {
-    pixel.add(Vec3d(path.radiance));
-    pixel.hitCount += path.cameraHits;
-    if (signatures == PathSignatures::on) pixel.pathSignature += path.signature;
+/// The pixels of a film, row by row.
+std::vector<std::uint32_t> pixelsOf(const Film& film) {
+    std::vector<std::uint32_t> pixels;
+    pixels.reserve(film.pixels.size());
+    for (std::uint32_t y = 0; y < film.height; ++y)
+        for (std::uint32_t x = 0; x < film.width; ++x) pixels.push_back(packPixel(x, y));
+    return pixels;
 }
 
 template <typename Real> class Renderer {
 public:
     Renderer(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options,
              const PixelRegion& region)
-        : world_(flatten<Real>(scene)), tracer_(scene, world_, settings, options), settings_(settings),
+        : world_(flatten<Real>(scene)), tracing_(scene, world_, settings, options.sides),
+          paths_(scene, world_, settings, tracing_), firstHits_(tracing_, settings), settings_(settings),
           options_(options), region_(region), film_(region.width, region.height) {
         if (options.aovs == Aovs::on) film_.keepAovs();
+        if (usesReplicates(settings.sampler)) film_.keepReplicates();
     }
 
     [[nodiscard]] Film render(const ProgressCallback& progress) {
-        const Pacing pacing(options_.stopping.seconds, kLargestPass);
-        std::uint32_t done = 0;
-        while (const std::uint32_t pass = nextPass(pacing, done)) {
-            renderPass(settings_.firstSample + done, pass);
-            done += pass;
-            if (progress && progress(pacing.fraction(done, settings_.sampleCount)) == Continue::no) break;
+        const SampleRange samples{settings_.firstSample, settings_.sampleCount};
+        SamplePlan plan(options_.stopping, samples, FirstPasses::growing, pixelsOf(film_));
+        while (const std::optional<Pass> pass = plan.next(film_)) {
+            renderPass(*pass);
+            film_.refineVariance();
+            if (progress && progress(plan.fraction(1.0)) == Continue::no) break;
         }
         return std::move(film_);
     }
 
 private:
-    /// The first passes are short without a time limit too, so that a slow scene can be interrupted and still shows
-    /// every pixel.
-    [[nodiscard]] std::uint32_t nextPass(const Pacing& pacing, std::uint32_t done) const {
-        return std::min(std::max(done, 1u), pacing.nextPass(done, settings_.sampleCount));
-    }
-
-    void renderPass(std::uint32_t firstSample, std::uint32_t sampleCount) {
+    void renderPass(const Pass& pass) {
         tbb::combinable<Counts> counts;
-        const tbb::blocked_range2d<std::uint32_t> pixels(0, region_.height, kTileSize, 0, region_.width, kTileSize);
-        tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::uint32_t>& tile) {
-            for (std::uint32_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
-                for (std::uint32_t x = tile.cols().begin(); x < tile.cols().end(); ++x)
-                    for (std::uint32_t i = 0; i < sampleCount; ++i) takeSample(x, y, firstSample + i, counts.local());
+        const tbb::blocked_range<std::size_t> places(0, pass.pixels.size(), kGrain);
+        tbb::parallel_for(places, [&](const tbb::blocked_range<std::size_t>& part) {
+            for (std::size_t place = part.begin(); place != part.end(); ++place)
+                for (std::uint32_t i = 0; i < pass.sampleCount; ++i)
+                    takeSample(pass.pixels[place], pass.firstSample + i, counts.local());
         });
-        counts.combine_each([&](const Counts& part) {
-            film_.rays += part.rays;
-            film_.diagnostics.merge(part.diagnostics);
-        });
+        counts.combine_each([&](const Counts& part) { addCounts(part); });
     }
 
-    void takeSample(std::uint32_t x, std::uint32_t y, std::uint32_t sample, Counts& counts) {
-        const PathResult<Real> path = tracer_.trace(region_.x + x, region_.y + y, sample);
-        addSample(film_.at(x, y), path, options_.signatures);
-        if (path.firstHit && options_.aovs == Aovs::on)
-            film_.aovs[std::size_t{y} * film_.width + x].add(*path.firstHit);
+    void addCounts(const Counts& counts) {
+        film_.rays += counts.rays;
+        film_.diagnostics.merge(counts.diagnostics);
+        if (options_.counts == TraversalCounts::off) return;
+        film_.boxTests += counts.tests.boxes;
+        film_.primitiveTests += counts.tests.primitives;
+    }
+
+    void takeSample(std::uint32_t pixel, std::uint32_t sample, Counts& counts) {
+        const SampleIndex index{region_.x + pixelX(pixel), region_.y + pixelY(pixel), sample};
+        const SampleStream stream = tracing_.stream(index);
+        const PathResult<Real> path = followsLight(settings_) ? paths_.trace(stream) : firstHits_.trace(stream);
+        addSample(std::size_t{pixelY(pixel)} * film_.width + pixelX(pixel), sample, path);
         counts.rays += path.rays;
+        counts.tests.merge(path.tests);
         diagnose(Vec3d(path.radiance), counts.diagnostics);
     }
 
+    void addSample(std::size_t place, std::uint32_t sample, const PathResult<Real>& path) {
+        PixelStatistics& pixel = film_.pixels[place];
+        const Vec3d radiance(path.radiance);
+        pixel.add(radiance);
+        pixel.hitCount += path.cameraHits;
+        if (options_.signatures == PathSignatures::on) pixel.pathSignature += path.signature;
+        if (options_.aovs == Aovs::on && path.firstHit) film_.aovs[place].add(*path.firstHit);
+        if (!film_.replicates.empty()) film_.replicates[place].add(sample, radiance);
+    }
+
     World<Real> world_;
-    PathTracer<Real> tracer_;
+    Tracing<Real> tracing_;
+    PathTracer<Real> paths_;
+    FirstHitTracer<Real> firstHits_;
     RenderSettings settings_;
     ReferenceOptions options_;
     PixelRegion region_;
@@ -104,6 +120,9 @@ void checkRequest(const Scene& scene, const RenderSettings& settings, const Pixe
     const bool inside = std::uint64_t{region.x} + region.width <= settings.width &&
                         std::uint64_t{region.y} + region.height <= settings.height;
     if (!inside) throwBadInput("reference", "the region of pixels leaves the image");
+    const bool endless = followsLight(settings) && settings.roulette.kind == Roulette::off &&
+                         countedBounces(settings).last == kUnlimitedDepth;
+    if (endless) throwBadInput("reference", "without roulette paths need a largest number of bounces");
 }
 
 } // namespace

@@ -20,16 +20,16 @@ struct PixelRegion {
 };
 
 /// Renders samples firstSample ... firstSample + sampleCount - 1 of every pixel on all processors; the result does not
-/// depend on how many there are. The samples are taken in passes over the whole image, of 1, 1, 2, 4, 8 and then 16
-/// samples; with a time limit they shrink again towards its end, and every pixel has as many samples as time allows.
-/// `progress` (may be empty) is called after each pass, and if it answers `Continue::no` the film holds the passes done
-/// so far. Throws Error (bad input) if the scene has no camera of the index asked for.
+/// depend on how many there are. The samples are taken in the passes of a `SamplePlan` over the image, of 1, 1, 2, 4, 8
+/// and then 16 samples, until the options' stopping rule ends them. `progress` (may be empty) is called after each
+/// pass, and if it answers `Continue::no` the film holds the passes done so far. Throws Error (bad input) if the scene
+/// has no camera of the index asked for, or if neither roulette nor a number of bounces ends paths.
 [[nodiscard]] Film renderReference(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options,
                                    const ProgressCallback& progress);
 
 /// The same for some pixels of the image, to look into them: the film is as large as `region`, and its pixel (i, j) is
-/// bit for bit what `renderReference` puts at (region.x + i, region.y + j). Throws Error (bad input) if the region
-/// leaves the image.
+/// bit for bit what `renderReference` puts at (region.x + i, region.y + j) from the same samples; a stopping rule sees
+/// the region alone. Throws Error (bad input) if the region leaves the image.
 [[nodiscard]] Film renderReferenceRegion(const Scene& scene, const RenderSettings& settings,
                                          const ReferenceOptions& options, const PixelRegion& region,
                                          const ProgressCallback& progress);

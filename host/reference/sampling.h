@@ -1,4 +1,4 @@
-// The sampling recipes of host/scene/README.md: pure maps from the unit square, and the power heuristic.
+// The sampling recipes of host/scene/README.md: pure maps from the unit square, and the two heuristics.
 #pragma once
 
 #include "core/math.h"
@@ -26,7 +26,8 @@ template <typename Real> [[nodiscard]] Frame<Real> frameAbout(const Vec3<Real>& 
             n};
 }
 
-/// Cosine-weighted direction about +z: Shirley and Chiu 1997 (concentric map), lifted to the hemisphere (Malley).
+/// The concentric map of the square to the unit disk, and from there up to the hemisphere (Malley): z is the height
+/// above (x, y). Shirley and Chiu 1997.
 template <typename Real> [[nodiscard]] Vec3<Real> sampleCosineHemisphere(Real u, Real v) {
     const Real a = 2 * u - 1;
     const Real b = 2 * v - 1;
@@ -38,6 +39,18 @@ template <typename Real> [[nodiscard]] Vec3<Real> sampleCosineHemisphere(Real u,
     const Real z = std::sqrt((1 - std::abs(r)) * (1 + std::abs(r)));
     if (horizontal) return {r * std::cos(phi), r * std::sin(phi), z};
     return {r * std::sin(phi), r * std::cos(phi), z};
+}
+
+/// Uniform point on the unit disk, by the same concentric map.
+template <typename Real> [[nodiscard]] Vec2<Real> sampleDisk(Real u, Real v) {
+    return Vec2<Real>(sampleCosineHemisphere(u, v));
+}
+
+/// Uniform direction of the hemisphere about +z; pdf in solid angle 1/(2 pi).
+template <typename Real> [[nodiscard]] Vec3<Real> sampleUniformHemisphere(Real u, Real v) {
+    const Real r = std::sqrt((1 - u) * (1 + u));
+    const Real phi = static_cast<Real>(2 * kPi) * v;
+    return {r * std::cos(phi), r * std::sin(phi), u};
 }
 
 /// Uniform barycentric coordinates (Heitz 2019, "A low-distortion map between triangle and square").
@@ -94,6 +107,13 @@ template <typename Real> [[nodiscard]] Real powerHeuristic(Real f, Real g) {
     }
     const Real ratio = f / g;
     return ratio * ratio / (1 + ratio * ratio);
+}
+
+/// The same by f/(f + g) (Veach 1997, eq. 9.8).
+template <typename Real> [[nodiscard]] Real balanceHeuristic(Real f, Real g) {
+    if (g <= f) return 1 / (1 + g / f);
+    const Real ratio = f / g;
+    return ratio / (1 + ratio);
 }
 
 } // namespace isolux

@@ -3,6 +3,7 @@
 
 #include "core/progress.h"
 #include "film/film.h"
+#include "film/sample_plan.h"
 #include "gpu/commands.h"
 #include "gpu/kernel.h"
 #include "pack/scene_features.h"
@@ -14,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -25,8 +27,9 @@ struct RenderOptions {
     ReadPath readPath = ReadPath::automatic;
     PathSignatures signatures = PathSignatures::off;
     Aovs aovs = Aovs::off;
+    TraversalCounts counts = TraversalCounts::off;
+    StoppingRule stopping;
     std::function<void(std::string_view)> stage; ///< told what is being prepared; may be empty
-    std::optional<double> seconds;               ///< stop after about this time, at least one sample a pixel
     std::optional<SceneFeatures> features;       ///< instead of what the scene needs (for tests and benchmarks)
     std::optional<std::uint32_t> maxLanes;       ///< instead of what suits the device
 };
@@ -47,15 +50,15 @@ public:
     PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings,
                  const RenderOptions& options);
 
-    /// Renders all samples of all pixels into `film` (of the settings' resolution). If it is interrupted or throws,
-    /// the film holds the tiles and batches finished until then.
+    /// Renders the samples of all pixels that are due by the stopping rule into `film` (of the settings' resolution).
+    /// If it is interrupted or throws, the film holds what was finished until then.
     void render(Film& film, const ProgressCallback& progress) { render(film, wholeImage(), progress); }
     /// The same for the pixels of a region; the others keep zero samples.
     void render(Film& film, const Tile& region, const ProgressCallback& progress);
 
     /// Renders other samples or a lesser depth from now on; resolution and camera stay, and so does what the kernel was
     /// specialised to.
-    void setSamples(const Batch& samples) { samples_ = samples; }
+    void setSamples(const SampleRange& samples) { samples_ = samples; }
     void setMaxDepth(std::uint32_t maxDepth);
 
     [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
@@ -66,14 +69,20 @@ private:
     void createKernel();
     void createPathBuffers();
     void writeParameters();
-    double dispatch(const Tile& tile, const Batch& batch, std::uint32_t budget, bool fresh);
-    Continue renderTile(const Tile& tile, const Batch& batch, const std::function<Continue(double)>& progress);
-    void joinTile(Film& film, const Tile& tile, const Batch& batch) const;
+    enum class Lanes { start, resume };
+    void createOptionalBuffers(VkDeviceSize lanes);
+    double dispatch(const Pass& chunk, std::uint32_t budget, Lanes lanes);
+    Continue renderPass(Film& film, const Pass& pass, const std::function<Continue(double)>& progress);
+    Continue renderChunk(const Pass& chunk, const std::function<Continue(double)>& progress);
+    void joinChunk(Film& film, const Pass& chunk) const;
     void joinAovs(PixelAovs& aovs, const shared::AovRecord& record) const;
+    void joinReplicates(PixelReplicates& replicates, const Pass& chunk, std::size_t lane) const;
+    [[nodiscard]] bool keepsSamples() const { return usesReplicates(settings_.sampler); }
 
     const Device& device_;
     RenderOptions options_;
-    Batch samples_;
+    RenderSettings settings_;
+    SampleRange samples_;
     CommandRunner runner_;
     RenderStatistics statistics_;
     shared::RenderParameters parameters_{};
@@ -86,8 +95,10 @@ private:
     std::unique_ptr<Buffer> paths_;
     std::unique_ptr<Buffer> films_;
     std::unique_ptr<Buffer> aovs_;
+    std::unique_ptr<Buffer> pixelList_; ///< of the current chunk, a lane each
+    std::unique_ptr<Buffer> sampleRadiance_;
     std::vector<std::uint32_t> firstOfObject_;
-    double radiancePerDevice_ = 1.0;
+    double valuePerDevice_ = 1.0; ///< of what a sample's value is: radiance, depth, or a number without unit
     double worldPerDevice_ = 1.0; ///< length
     std::unique_ptr<Buffer> stacks_;
     std::unique_ptr<Buffer> completion_;

@@ -9,26 +9,39 @@ namespace {
 constexpr std::uint32_t kLoopIterationLimit = 56'000; // of 65,535: the rest is for stacks and leaves
 constexpr std::uint32_t kMaxBudget = 7'000;
 constexpr std::uint32_t kMinBudget = 16;
-constexpr std::uint32_t kBlockLanes = 64; // 8 x 8 pixels
+constexpr std::uint32_t kBlockEdge = 8; // pixels
+constexpr std::uint32_t kBlockLanes = kBlockEdge * kBlockEdge;
+
+void addBlock(const Tile& block, std::vector<std::uint32_t>& pixels) {
+    for (std::uint32_t y = block.y; y < block.y + block.height; ++y)
+        for (std::uint32_t x = block.x; x < block.x + block.width; ++x) pixels.push_back(packPixel(x, y));
+}
+
+void addBlocks(const Tile& tile, std::vector<std::uint32_t>& pixels) {
+    for (std::uint32_t y = 0; y < tile.height; y += kBlockEdge)
+        for (std::uint32_t x = 0; x < tile.width; x += kBlockEdge)
+            addBlock(
+                {tile.x + x, tile.y + y, std::min(kBlockEdge, tile.width - x), std::min(kBlockEdge, tile.height - y)},
+                pixels);
+}
 
 } // namespace
 
-Schedule makeSchedule(const Tile& region, const ScheduleLimits& limits) {
-    Schedule schedule;
-    const std::uint32_t blocks = std::max(limits.maxLanes / kBlockLanes, 1u);
+std::vector<std::uint32_t> orderPixels(const Tile& region, std::uint32_t maxLanes) {
+    std::vector<std::uint32_t> pixels;
+    pixels.reserve(region.pixelCount());
+    const std::uint32_t blocks = std::max(maxLanes / kBlockLanes, 1u);
     // About square, so that a tile's paths see similar things; long thin images get long thin tiles.
     const auto square = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(blocks)));
-    const std::uint32_t rows = std::max(std::min((region.height + 7) / 8, square), 1u);
-    const std::uint32_t tileHeight = rows * 8;
-    const std::uint32_t tileWidth = blocks / rows * 8;
+    const std::uint32_t rows = std::max(std::min((region.height + kBlockEdge - 1) / kBlockEdge, square), 1u);
+    const std::uint32_t tileHeight = rows * kBlockEdge;
+    const std::uint32_t tileWidth = blocks / rows * kBlockEdge;
     for (std::uint32_t y = 0; y < region.height; y += tileHeight)
-        for (std::uint32_t x = 0; x < region.width; x += tileWidth) {
-            const Tile tile{region.x + x, region.y + y, std::min(tileWidth, region.width - x),
-                            std::min(tileHeight, region.height - y)};
-            schedule.maxLaneCount = std::max(schedule.maxLaneCount, tile.laneCount());
-            schedule.tiles.push_back(tile);
-        }
-    return schedule;
+        for (std::uint32_t x = 0; x < region.width; x += tileWidth)
+            addBlocks({region.x + x, region.y + y, std::min(tileWidth, region.width - x),
+                       std::min(tileHeight, region.height - y)},
+                      pixels);
+    return pixels;
 }
 
 std::uint32_t maxStepBudget(std::uint32_t subgroupSize) {

@@ -19,16 +19,96 @@ double perSecond(std::uint64_t count, double seconds) {
     return seconds > 0.0 ? static_cast<double>(count) / seconds : kUnknown;
 }
 
+double ratio(std::uint64_t count, std::uint64_t whole) {
+    return whole > 0 ? static_cast<double>(count) / static_cast<double>(whole) : kUnknown;
+}
+
 /// The variance of a pixel's mean luminance.
 double luminanceError(const PixelStatistics& pixel) {
     return pixel.sampleCount < 2 ? kUnknown : pixel.luminanceVariance() / static_cast<double>(pixel.sampleCount);
 }
 
+/// Samples of replicate r of every pixel, as one estimate of the image's mean luminance.
+struct ReplicateMean {
+    double luminance = 0.0;
+    double weight = 0.0; ///< samples; 0 if a pixel has none
+};
+
+ReplicateMean replicateMean(const Film& film, std::size_t replicate) {
+    double luminanceSum = 0.0;
+    double samples = 0.0;
+    for (const PixelReplicates& pixel : film.replicates) {
+        const auto count = static_cast<double>(pixel.sampleCount[replicate]);
+        if (count == 0.0) return {};
+        luminanceSum += luminance(pixel.sum[replicate]) / count;
+        samples += count;
+    }
+    return {luminanceSum / static_cast<double>(film.replicates.size()), samples};
+}
+
+/// Samples depend on each other within a replicate, and pixels may; replicates do not. With weights w, the variance of
+/// the weighted mean is sum w (m_r - m)^2 / ((R - 1) sum w), as each m_r has a variance in proportion to 1 / w.
+Interval replicateInterval(double estimate, const Film& film) {
+    std::vector<ReplicateMean> means;
+    double weight = 0.0;
+    double center = 0.0;
+    for (std::size_t i = 0; i < PixelReplicates::kCount; ++i) {
+        const ReplicateMean mean = replicateMean(film, i);
+        if (mean.weight == 0.0) continue;
+        means.push_back(mean);
+        weight += mean.weight;
+        center += mean.weight * mean.luminance;
+    }
+    if (means.size() < 2) return {kUnknown, estimate, kUnknown};
+    center /= weight;
+    double squares = 0.0;
+    for (const ReplicateMean& mean : means)
+        squares += mean.weight * (mean.luminance - center) * (mean.luminance - center);
+    const double degrees = static_cast<double>(means.size() - 1);
+    return studentInterval(estimate, std::sqrt(squares / (degrees * weight)), degrees);
+}
+
+/// The same of independent samples, by the variances of the pixels.
+Interval pixelInterval(double estimate, const Film& film) {
+    double varianceSum = 0.0;
+    for (const PixelStatistics& pixel : film.pixels) varianceSum += luminanceError(pixel);
+    return normalInterval(estimate, std::sqrt(varianceSum) / static_cast<double>(film.pixels.size()));
+}
+
+// --- Text ---
+
 std::string sceneText(const RunReport& report) {
     const std::string depth =
         report.maxDepth ? fmt::format("{} bounces at most", *report.maxDepth) : "no limit of bounces";
-    return fmt::format("{} ({}), {} x {}, {} samples from {}, seed {}, {}", report.scene, report.sceneHash,
-                       report.width, report.height, report.samplesPerPixel, report.firstSample, report.seed, depth);
+    return fmt::format("{} ({}), {} x {}, {}{} samples from {}, seed {}, {}", report.scene, report.sceneHash,
+                       report.width, report.height, report.adaptive ? "up to " : "", report.samplesPerPixel,
+                       report.firstSample, report.seed, depth);
+}
+
+std::string methodsText(const std::vector<MethodChoice>& methods) {
+    std::string text;
+    for (const MethodChoice& method : methods)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", method.option, method.value);
+    return text;
+}
+
+std::string adaptiveText(const AdaptiveSummary& adaptive) {
+    return formatLine("adaptive",
+                      fmt::format("tolerance {}, {} to {} samples a pixel, {} on average, {:.1f} % of the "
+                                  "pixels below the maximum of {}",
+                                  formatNumber(adaptive.rule.tolerance), adaptive.least, adaptive.most,
+                                  formatNumber(adaptive.mean), 100.0 * adaptive.stoppedShare, adaptive.maximum)) +
+           formatLine("", "biased: pixels stop by the noise they happen to have (host/film/README.md says how much)");
+}
+
+std::string errorTargetText(const RunReport& report) {
+    return fmt::format("relative RMSE {}: {} after {} samples a pixel", formatNumber(*report.errorTarget),
+                       report.errorTargetReached() ? "reached" : "not reached", report.samplesPerPixel);
+}
+
+std::string testsText(const RunReport& report) {
+    return fmt::format("{} boxes and {} primitives a ray", formatNumber(ratio(report.boxTests, report.rays)),
+                       formatNumber(ratio(report.primitiveTests, report.rays)));
 }
 
 std::string deviceText(const RunReport& report) {
@@ -67,6 +147,7 @@ std::string requestText(const RunReport& report) {
         text += formatLine("environment", fmt::format("{}, {}", formatColor(report.environment->radiance),
                                                       report.environment->extent));
     }
+    if (!report.methods.empty()) text += formatLine("methods", methodsText(report.methods));
     if (report.timeLimit) text += formatLine("time limit", fmt::format("{} s", formatNumber(*report.timeLimit)));
     if (!report.layers.empty()) text += formatLine("layers", fmt::format("{}", fmt::join(report.layers, ", ")));
     return text;
@@ -75,6 +156,40 @@ std::string requestText(const RunReport& report) {
 ordered_json environmentJson(const RunReport& report) {
     if (!report.environment) return {};
     return {{"radiance", toJson(report.environment->radiance)}, {"extent", report.environment->extent}};
+}
+
+ordered_json methodsJson(const std::vector<MethodChoice>& methods) {
+    ordered_json json = ordered_json::object();
+    for (const MethodChoice& method : methods) json[method.option] = method.value;
+    return json;
+}
+
+ordered_json adaptiveJson(const RunReport& report) {
+    if (!report.adaptive) return {};
+    const AdaptiveSummary& adaptive = *report.adaptive;
+    return {{"tolerance", adaptive.rule.tolerance},
+            {"batch", adaptive.rule.batch},
+            {"minSamples", adaptive.rule.minSamples},
+            {"maxSamples", adaptive.maximum},
+            {"samplesPerPixel", {{"min", adaptive.least}, {"mean", adaptive.mean}, {"max", adaptive.most}}},
+            {"stoppedShare", adaptive.stoppedShare},
+            {"biased", true}};
+}
+
+ordered_json errorTargetJson(const RunReport& report) {
+    if (!report.errorTarget) return {};
+    return {{"asked", *report.errorTarget},
+            {"reached", report.errorTargetReached()},
+            {"relativeRmse", report.quality.relativeRmse},
+            {"samplesPerPixel", report.samplesPerPixel}};
+}
+
+ordered_json testsJson(const RunReport& report) {
+    if (report.boxTests + report.primitiveTests == 0) return {};
+    return {{"boxes", report.boxTests},
+            {"primitives", report.primitiveTests},
+            {"boxesPerRay", ratio(report.boxTests, report.rays)},
+            {"primitivesPerRay", ratio(report.primitiveTests, report.rays)}};
 }
 
 ordered_json timingsJson(const RunTimings& timings) {
@@ -93,15 +208,22 @@ ordered_json deviceJson(const RunReport& report) {
 
 ImageQuality imageQuality(const Film& film) {
     double luminanceSum = 0.0;
-    double varianceSum = 0.0;
+    for (const PixelStatistics& pixel : film.pixels) luminanceSum += luminance(pixel.mean);
+    const double estimate = luminanceSum / static_cast<double>(film.pixels.size());
+    return {film.replicates.empty() ? pixelInterval(estimate, film) : replicateInterval(estimate, film),
+            estimatedRelativeRmse(film)};
+}
+
+AdaptiveSummary summariseAdaptive(const Film& film, const AdaptiveRule& rule, std::uint64_t maximum) {
+    std::uint64_t samples = 0;
+    std::uint64_t stopped = 0;
     for (const PixelStatistics& pixel : film.pixels) {
-        luminanceSum += luminance(pixel.mean);
-        varianceSum += luminanceError(pixel);
+        samples += pixel.sampleCount;
+        stopped += pixel.sampleCount < maximum ? 1 : 0;
     }
-    const double count = static_cast<double>(film.pixels.size());
-    const double meanLuminance = luminanceSum / count;
-    return {normalInterval(meanLuminance, std::sqrt(varianceSum) / count),
-            std::sqrt(varianceSum / count) / meanLuminance};
+    const std::uint64_t pixels = film.pixels.size();
+    return {
+        rule, maximum, film.minSampleCount(), film.maxSampleCount(), ratio(samples, pixels), ratio(stopped, pixels)};
 }
 
 void describeFilm(RunReport& report, const Film& film) {
@@ -111,6 +233,8 @@ void describeFilm(RunReport& report, const Film& film) {
     report.samples = 0;
     for (const PixelStatistics& pixel : film.pixels) report.samples += pixel.sampleCount;
     report.rays = film.rays;
+    report.boxTests = film.boxTests;
+    report.primitiveTests = film.primitiveTests;
     report.diagnostics = film.diagnostics;
     report.quality = imageQuality(film);
 }
@@ -119,12 +243,17 @@ double RunReport::raysPerSecond() const { return perSecond(rays, timings.render)
 
 double RunReport::samplesPerSecond() const { return perSecond(samples, timings.render); }
 
+bool RunReport::errorTargetReached() const { return errorTarget && quality.relativeRmse <= *errorTarget; }
+
 std::string toText(const RunReport& report) {
     std::string text = formatLine("scene", sceneText(report)) + requestText(report) +
                        formatLine("device", deviceText(report)) + formatLine("start-up", startUpText(report.timings)) +
-                       formatLine("render", renderText(report)) + formatLine("speed", speedText(report)) +
-                       formatLine("image", qualityText(report.quality)) +
-                       formatLine("diagnostics", formatDiagnostics(report.diagnostics));
+                       formatLine("render", renderText(report)) + formatLine("speed", speedText(report));
+    if (report.boxTests + report.primitiveTests > 0) text += formatLine("tests", testsText(report));
+    if (report.adaptive) text += adaptiveText(*report.adaptive);
+    if (report.errorTarget) text += formatLine("until error", errorTargetText(report));
+    text += formatLine("image", qualityText(report.quality)) +
+            formatLine("diagnostics", formatDiagnostics(report.diagnostics));
     for (const std::string& explanation : report.explanations) text += formatLine("note", explanation);
     for (const std::string& message : report.validationMessages) text += formatLine("validation", message);
     return text;
@@ -144,11 +273,15 @@ ordered_json toJson(const RunReport& report) {
             {"maxDepth", report.maxDepth ? ordered_json(*report.maxDepth) : ordered_json()},
             {"camera", report.camera.empty() ? ordered_json() : ordered_json(report.camera)},
             {"environment", environmentJson(report)},
+            {"methods", methodsJson(report.methods)},
             {"timeLimitSeconds", report.timeLimit ? ordered_json(*report.timeLimit) : ordered_json()},
+            {"adaptive", adaptiveJson(report)},
+            {"untilError", errorTargetJson(report)},
             {"layers", report.layers},
             {"seconds", timingsJson(report.timings)},
             {"rays", report.rays},
             {"raysPerSecond", report.raysPerSecond()},
+            {"tests", testsJson(report)},
             {"samples", report.samples},
             {"samplesPerSecond", report.samplesPerSecond()},
             {"dispatches", report.dispatchCount},

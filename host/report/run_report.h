@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "film/sample_plan.h"
 #include "report/statistics.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,11 +15,29 @@ namespace isolux {
 
 /// What a film tells of its own error. NaN where a pixel has fewer than two samples, as its variance is unknown.
 struct ImageQuality {
-    Interval meanLuminance;
-    /// Estimated relative RMSE of the image's luminance: sqrt(mean of variance_Y / samples) / mean luminance.
-    double relativeRmse = std::numeric_limits<double>::quiet_NaN();
+    Interval meanLuminance; ///< by the replicates' means where the film has them, else by the pixels' variances
+    double relativeRmse = std::numeric_limits<double>::quiet_NaN(); ///< estimatedRelativeRmse
 };
 [[nodiscard]] ImageQuality imageQuality(const Film& film);
+
+/// How a render went about it, where that is not the usual way: an option without its dashes and what it was given.
+struct MethodChoice {
+    std::string option;
+    std::string value;
+
+    friend bool operator==(const MethodChoice&, const MethodChoice&) = default;
+};
+
+/// What adaptive sampling did.
+struct AdaptiveSummary {
+    AdaptiveRule rule;
+    std::uint64_t maximum = 0; ///< samples a pixel that were allowed
+    std::uint64_t least = 0;   ///< samples a pixel that were taken
+    std::uint64_t most = 0;
+    double mean = 0.0;
+    double stoppedShare = 0.0; ///< of the pixels: those with fewer samples than the maximum
+};
+[[nodiscard]] AdaptiveSummary summariseAdaptive(const Film& film, const AdaptiveRule& rule, std::uint64_t maximum);
 
 /// Seconds. `render` is wall time from the first dispatch to the last result; start-up is the four before it.
 struct RunTimings {
@@ -53,10 +72,15 @@ struct RunReport {
     std::optional<std::uint32_t> maxDepth; ///< nothing: no limit
     std::string camera;                    ///< its name; empty: it has none
     std::optional<EnvironmentSummary> environment;
-    std::optional<double> timeLimit; ///< seconds after which rendering stops, whatever the samples asked for
+    std::vector<MethodChoice> methods;
+    std::optional<double> timeLimit;   ///< seconds after which rendering stops, whatever the samples asked for
+    std::optional<double> errorTarget; ///< relative RMSE at which rendering stops
+    std::optional<AdaptiveSummary> adaptive;
     std::vector<std::string> layers; ///< what the image holds besides radiance: "albedo", ...
     RunTimings timings;
     std::uint64_t rays = 0;
+    std::uint64_t boxTests = 0; ///< that and the next: 0 if they were not counted
+    std::uint64_t primitiveTests = 0;
     std::uint64_t samples = 0; ///< of all pixels
     std::uint64_t dispatchCount = 0;
     double longestDispatch = 0.0; ///< seconds
@@ -67,9 +91,10 @@ struct RunReport {
 
     [[nodiscard]] double raysPerSecond() const; ///< of `timings.render`; NaN if that is 0
     [[nodiscard]] double samplesPerSecond() const;
+    [[nodiscard]] bool errorTargetReached() const; ///< false while the error is unknown
 };
 
-/// Sets what the film itself knows: size, sample counts, rays, diagnostics and quality.
+/// Sets what the film itself knows: size, sample counts, rays, tests, diagnostics and quality.
 void describeFilm(RunReport& report, const Film& film);
 
 [[nodiscard]] std::string toText(const RunReport& report);

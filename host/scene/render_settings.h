@@ -2,6 +2,8 @@
 // says what each choice means to the last random number.
 #pragma once
 
+#include "core/sample_sequence.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -91,6 +93,7 @@ struct RenderSettings {
     PixelSampler sampler = PixelSampler::independent;
     std::uint32_t firstSample = 0;            ///< samples firstSample ... firstSample + sampleCount - 1 are rendered
     std::uint32_t sampleCount = 64;           ///< samples a pixel; the most, if something else may stop it earlier
+    std::uint32_t plannedSamples = 0;         ///< samples that samplers prepare for; 0: firstSample + sampleCount
     std::uint32_t maxDepth = kUnlimitedDepth; ///< bounces: 0 emitted light alone, 1 direct light, ...
     Integrator integrator = Integrator::path;
     BounceSelection bounces = BounceSelection::accumulate; ///< `last` needs a maxDepth
@@ -123,6 +126,12 @@ struct BounceRange {
 /// Whether light is carried along paths at all.
 [[nodiscard]] inline bool followsLight(const RenderSettings& settings) {
     return settings.integrator == Integrator::path || settings.integrator == Integrator::direct;
+}
+
+/// SequencePlan::cellBits of a render.
+[[nodiscard]] inline std::uint32_t cellBitsOf(const RenderSettings& settings) {
+    const std::uint64_t samples = std::uint64_t{settings.firstSample} + settings.sampleCount;
+    return cellBitsFor(settings.plannedSamples == 0 ? samples : settings.plannedSamples);
 }
 
 /// Samples are dealt to so many independently randomised replicates in turn: sample s belongs to replicate s mod

@@ -28,6 +28,16 @@ vec2 cosSinTurn(float u) {
     return (q & 2u) == 0u ? rotated : -rotated;
 }
 
+// Concentric map of the square to the disk (Shirley and Chiu 1997); `radius`: signed distance from the centre.
+vec2 concentricDisk(vec2 u, out float radius) {
+    vec2 d = 2.0 * u - 1.0;
+    bool byX = abs(d.x) > abs(d.y);
+    radius = byX ? d.x : d.y;
+    float other = byX ? d.y : d.x;
+    vec2 sc = sinCosOctant(radius == 0.0 ? 0.0 : 0.25 * kPi * (other / radius));
+    return radius * (byX ? sc.yx : sc.xy);
+}
+
 float maxComponent(vec3 v) { return max(v.x, max(v.y, v.z)); }
 
 float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
@@ -55,11 +65,12 @@ void frameAbout(vec3 n, out vec3 tangent, out vec3 bitangent) {
     bitangent = vec3(b, sigma + n.y * n.y * a, -n.y);
 }
 
-// Power heuristic with exponent 2 (Veach 1997, eq. 9.13) in ratio form: no pdf is ever squared.
-float powerHeuristic(float f, float g) {
+// The weight of a sample of density f beside another technique of density g: f^p / (f^p + g^p) with p = 1 or 2 (balance
+// and power heuristic, Veach 1997, 9.2.2) in ratio form: no pdf is ever squared.
+float misWeight(float f, float g, bool balance) {
     float ratio = g <= f ? g / f : f / g;
-    float squared = ratio * ratio;
-    return (g <= f ? 1.0 : squared) / (1.0 + squared);
+    float powered = balance ? ratio : ratio * ratio;
+    return (g <= f ? 1.0 : powered) / (1.0 + powered);
 }
 
 #endif

@@ -25,7 +25,7 @@ void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransfor
     vec3 p0 = primitive.p0Material.xyz;
     vec3 p1 = primitive.p1Light.xyz;
     vec3 p2 = primitive.p2Id.xyz;
-    TriangleHit hit = intersectTriangle(p0, p1, p2, ray.origin, transform);
+    TriangleHit hit = intersectTriangle(p0, p1, p2, ray, transform);
     float b2 = 1.0 - hit.b0 - hit.b1;
     surface.position = hit.b0 * p0 + hit.b1 * p1 + b2 * p2;
     surface.error = errorBound(7.0) * (abs(hit.b0 * p0) + abs(hit.b1 * p1) + abs(b2 * p2)); // pbrt 6.8.4

@@ -1,4 +1,4 @@
-// Walks the quantised four-wide BVH, nearest child first, for a bounded number of steps at a time.
+// Walks the quantised four-wide BVH, nearest child first, or every primitive, for a bounded number of steps at a time.
 #ifndef ISOLUX_GEOMETRY_TRAVERSE_GLSL
 #define ISOLUX_GEOMETRY_TRAVERSE_GLSL
 
@@ -9,14 +9,18 @@
 
 layout(constant_id = 2) const uint kStackSize = 64u; // at least WideBvh::stackBound
 layout(constant_id = 3) const bool kSpheres = true;
+layout(constant_id = 22) const bool kEveryPrimitive = false; // there is no BVH
+layout(constant_id = 24) const bool kTraversalCounts = false;
 
 uint stackItems[kStackSize];    // WideChild bits
 float stackEntries[kStackSize]; // distance at which the ray enters the item's box
 
+uvec2 traversalTests = uvec2(0u); // boxes and primitives tested since a kernel last looked
+
 struct Traversal {
     float distance;  // nearest hit so far, or the limit
     uint primitive;  // its primitive, or kNone
-    uint stackCount; // entries waiting; 0: finished
+    uint stackCount; // entries waiting, or without a BVH primitives; 0: finished
 };
 
 // What a ray looks for. For kAnyHit the first hit will do.
@@ -30,10 +34,10 @@ struct Query {
     uint alsoIgnored; // the light a shadow ray ends at
 };
 
-Traversal beginTraversal(float limit, uint nodeCount) {
+Traversal beginTraversal(float limit, uint nodeCount, uint primitiveCount) {
     stackItems[0] = 0u;
     stackEntries[0] = 0.0;
-    return Traversal(limit, kNone, nodeCount == 0u ? 0u : 1u);
+    return Traversal(limit, kNone, kEveryPrimitive ? primitiveCount : min(nodeCount, 1u));
 }
 
 vec4 bytesOf(uint word) { return vec4(uvec4(word, word >> 8, word >> 16, word >> 24) & 0xFFu); }
@@ -86,6 +90,10 @@ vec4 childEntries(uvec4 words0, uvec4 lower, uvec4 upper, uvec4 children, RayTra
 void visitNode(uint node, Query query, RayTransform transform, inout Traversal state, inout uint overflows) {
     uint word = node * kNodeWords;
     uvec4 children = fetchNode(word + 3u);
+    if (kTraversalCounts) {
+        bvec4 used = notEqual(children, uvec4(kEmptyChild));
+        traversalTests.x += uint(used.x) + uint(used.y) + uint(used.z) + uint(used.w);
+    }
     vec4 entries = childEntries(fetchNode(word), fetchNode(word + 1u), fetchNode(word + 2u), children, transform,
                                 state.distance);
     // Farthest first on the stack; a sorting network of five comparisons.
@@ -102,12 +110,13 @@ void visitNode(uint node, Query query, RayTransform transform, inout Traversal s
 
 void testPrimitive(uint index, Query query, RayTransform transform, inout Traversal state) {
     PrimitiveRecord primitive = readPrimitive(index);
+    if (kTraversalCounts) ++traversalTests.y;
     float distance;
     if (kSpheres && (floatBitsToUint(primitive.p2Id.w) & kSphereBit) != 0u) {
         distance = intersectSphere(primitive.p0Material.xyz, primitive.p1Light.x, query.ray.origin, query.ray.direction);
     } else {
         distance = intersectTriangle(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
-                                     query.ray.origin, transform).distance;
+                                     query.ray, transform).distance;
     }
     bool ignored = index == query.ignored || index == query.alsoIgnored;
     if (!ignored && distance > 0.0 && distance < state.distance) {
@@ -129,8 +138,11 @@ void traverse(Query query, RayTransform transform, inout Traversal state, inout 
     while (state.stackCount > 0u && budget > 0u) {
         --budget;
         --state.stackCount;
-        uint item = stackItems[state.stackCount];
-        if (stackEntries[state.stackCount] < state.distance) {
+        if (kEveryPrimitive) {
+            testPrimitive(state.stackCount, query, transform, state);
+            if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
+        } else if (stackEntries[state.stackCount] < state.distance) {
+            uint item = stackItems[state.stackCount];
             if ((item & kLeafBit) == 0u) {
                 visitNode(item, query, transform, state, overflows);
             } else {

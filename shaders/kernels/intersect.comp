@@ -16,7 +16,7 @@ void trace(uint index) {
     RayRecord record = rays[index];
     Query query = Query(Ray(record.originDistance.xyz, record.direction.xyz), kNearestHit, kNone, kNone);
     RayTransform transform = transformFor(query.ray);
-    Traversal state = beginTraversal(record.originDistance.w, 1u);
+    Traversal state = beginTraversal(record.originDistance.w, 1u, 0u);
     uint overflows = 0u;
     if (kBruteForce) {
         // In chunks of primitives: what earlier chunks found is in the buffer.

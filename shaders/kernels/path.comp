@@ -1,20 +1,29 @@
-// Path tracing with next-event estimation, multiple importance sampling and Russian roulette. A lane works through one
-// pixel's batch of samples; a dispatch gives it a budget of steps, and what is unfinished is stored and resumed.
+// Path tracing: light sampling, scattering, Russian roulette. A lane works through one pixel's batch of samples; a dispatch
+// gives it a budget of steps, and what is unfinished is stored and resumed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "kernels/scene_bindings.glsl"
-#include "core/philox.glsl"
+#include "core/sample_sequence.glsl"
 #include "film/accumulate.glsl"
+#include "geometry/camera.glsl"
 #include "geometry/surface.glsl"
 #include "geometry/traverse.glsl"
 #include "light/light.glsl"
 #include "material/lambertian.glsl"
 #include "shared/path_records.h"
 
-layout(constant_id = 6) const bool kRoulette = true;
+layout(constant_id = 6) const uint kRoulette = kRouletteThroughput;
 layout(constant_id = 7) const bool kPathSignatures = false;
 layout(constant_id = 12) const bool kAovs = false;
+layout(constant_id = 13) const uint kSampler = kSamplerIndependent;
+layout(constant_id = 14) const uint kIntegrator = kIntegratorPath;
+layout(constant_id = 15) const uint kLightSampling = kLightSamplingMis;
+layout(constant_id = 16) const bool kBalanceHeuristic = false;
+layout(constant_id = 17) const bool kLightLoop = false;
+layout(constant_id = 18) const bool kAllLights = false;
+layout(constant_id = 19) const bool kBounceRange = false;
+layout(constant_id = 25) const bool kKeepSamples = false;
 
 layout(set = 0, binding = 8, std140) uniform RenderBuffer { RenderParameters render; };
 layout(set = 0, binding = 9, std430) buffer PathBuffer { PathRecord paths[]; };
@@ -22,9 +31,18 @@ layout(set = 0, binding = 10, std430) buffer FilmBuffer { FilmRecord films[]; };
 layout(set = 0, binding = 11, std430) buffer StackBuffer { uvec2 stacks[]; };
 layout(set = 0, binding = 12, std430) buffer CompletionBuffer { CompletionRecord completion; };
 layout(set = 0, binding = 15, std430) buffer AovBuffer { AovRecord aovs[]; };
+layout(set = 0, binding = 16, std430) readonly buffer PixelBuffer { uint pixels[]; };
+layout(set = 0, binding = 17, std430) writeonly buffer SampleBuffer { SampleRecord samples[]; };
 layout(push_constant) uniform Parameters { DispatchParameters parameters; };
 
 const float kMaxSurvival = 1.0 - 1.0 / 1024.0; // host/scene/render_settings.h
+
+// A point whose lights are being sampled.
+struct ShadingPoint {
+    vec3 facing;
+    vec3 shading;
+    vec3 reflected; // the path's throughput there times the reflectance
+};
 
 // A path in registers: PathRecord by names.
 struct Path {
@@ -41,6 +59,8 @@ struct Path {
     vec3 shadowDirection;
     uint shadowPrimitive;
     vec3 shadowRadiance;
+    uint lightsLeft; // light samples still to be taken at the point below
+    ShadingPoint point;
     Traversal traversal;
 };
 
@@ -48,38 +68,39 @@ uvec2 pixel;
 FilmRecord film;
 Path path;
 
-// The pixel of a lane: workgroups take 8 x 8 blocks of the tile, so that neighbouring lanes see similar paths.
-uvec2 pixelOfLane(uint lane) {
-    uint blocksPerRow = (parameters.tile.z + 7u) / 8u;
-    uint block = lane / 64u;
-    uint within = lane % 64u;
-    return uvec2((block % blocksPerRow) * 8u + within % 8u, (block / blocksPerRow) * 8u + within / 8u);
-}
-
 uvec4 randomBlock(uint block) {
-    return philox4x32(uvec4(pixel, parameters.batch.x + path.sampleIndex, block), render.imageSeed.zw);
+    SampleIndex index = SampleIndex(render.imageSeed.zw, pixel, parameters.batch.x + path.sampleIndex, render.sampling.y);
+    uvec4 words;
+    if (kSampler == kSamplerSobol) {
+        words = sobolBlock(index, block);
+    } else if (kSampler == kSamplerSobolBlueNoise) {
+        words = sobolBlueNoiseBlock(index, block);
+    } else if (kSampler == kSamplerStratified) {
+        words = stratifiedBlock(index, block);
+    } else {
+        words = independentBlock(index, block);
+    }
+    return words;
 }
 
 void recordEvent(uint event) {
     if (kPathSignatures) path.signature = (path.signature ^ event) * kSignatureFactor;
 }
 
+void beginTraversalTo(float limit) {
+    path.traversal = beginTraversal(limit, render.sceneCounts.x, render.sceneCounts.y);
+}
+
 void beginNearest() {
     path.phase = kPhaseNearest;
-    path.traversal = beginTraversal(kFarthest, render.sceneCounts.x);
+    beginTraversalTo(kFarthest);
 }
 
 void beginSample() {
-    uvec4 random = randomBlock(0u);
-    // 2 (pixel + u) / size - 1, with the whole numbers apart: the sum keeps more of u's bits, all near the centre.
-    vec2 whole = vec2(2 * ivec2(pixel) + 1 - ivec2(render.imageSeed.xy));
-    vec2 within = 2.0 * vec2(unitReal(random.x), unitReal(random.y)) - 1.0;
-    vec2 position = (whole + within) / vec2(render.imageSeed.xy);
-    vec3 across = position.x * render.cameraRight.xyz - position.y * render.cameraUp.xyz;
-    bool orthographic = render.cameraPosition.w != 0.0;
-    path.ray.direction = orthographic ? render.cameraForward.xyz : normalize(across + render.cameraForward.xyz);
-    path.ray.origin = render.cameraPosition.xyz + (orthographic ? across : vec3(0.0));
+    path.ray = cameraRay(render, pixel, randomBlock(0u));
     path.leaves = kNone;
+    path.lightsLeft = 0u;
+    path.point = ShadingPoint(vec3(0.0), vec3(0.0), vec3(0.0));
     path.depth = 0u;
     path.pdf = 0.0;
     path.throughput = vec3(1.0);
@@ -91,6 +112,7 @@ void beginSample() {
 
 void endSample() {
     accumulateSample(film, path.radiance);
+    if (kKeepSamples) samples[gl_GlobalInvocationID.x].radiance[path.sampleIndex] = vec4(path.radiance, 0.0);
     film.counts.z += path.signature;
     ++path.sampleIndex;
     if (path.sampleIndex == parameters.batch.y) {
@@ -100,14 +122,22 @@ void endSample() {
     }
 }
 
+// Whether light of so many bounces counts.
+bool countsBounce(uint bounces) { return !kBounceRange || bounces >= render.sampling.x; }
+
+// The weight of light that scattering has found with the density `pdf` where light sampling has the density `ofLight`.
+float scatteringWeight(float pdf, float ofLight) {
+    return kLightSampling == kLightSamplingLight ? 0.0 : misWeight(pdf, ofLight, kBalanceHeuristic);
+}
+
 void addEmission(Surface surface, MaterialRecord material, float distance) {
     vec3 emission = material.emission.xyz;
-    if (emission != vec3(0.0) && (surface.front || material.emission.w != 0.0)) {
+    if (emission != vec3(0.0) && (surface.front || material.emission.w != 0.0) && countsBounce(path.depth)) {
         float weight = 1.0;
         if (kAreaLights && kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
             LightRecord light = readLight(render.tableOffsets.y, surface.light);
             float cosine = abs(dot(path.ray.direction, surface.facing));
-            weight = powerHeuristic(path.pdf, areaLightPdf(light, path.ray.origin, distance, cosine));
+            weight = scatteringWeight(path.pdf, areaLightPdf(light, path.ray.origin, distance, cosine));
         }
         path.radiance += path.throughput * emission * weight;
     }
@@ -117,8 +147,8 @@ void addEmission(Surface surface, MaterialRecord material, float distance) {
 void addEnvironment() {
     if (kEnvironment && path.ray.direction.y > render.environmentLimits.x) {
         bool onlyWay = path.depth == 0u || render.environment.w == 0.0;
-        float weight = onlyWay ? 1.0 : powerHeuristic(path.pdf, render.environment.w);
-        path.radiance += path.throughput * render.environment.xyz * weight;
+        float weight = onlyWay ? 1.0 : scatteringWeight(path.pdf, render.environment.w);
+        if (countsBounce(path.depth)) path.radiance += path.throughput * render.environment.xyz * weight;
         if (path.depth == 0u) film.mean.w += 1.0;
     }
 }
@@ -139,19 +169,37 @@ void clearAovs() {
     aovs[lane].primitiveId = uvec4[4](uvec4(kNone), uvec4(kNone), uvec4(kNone), uvec4(kNone));
 }
 
+// The light that sample `index` of a shading point goes to.
+uint lightOfSample(uint index, uvec4 random) {
+    uint areaSamples = render.lightSamples.y * render.lightSamples.z;
+    uint light;
+    if (kAllLights) {
+        light = index < areaSamples ? index / render.lightSamples.y
+                                    : render.lightSamples.z + min(index - areaSamples, render.lightSamples.w);
+    } else {
+        light = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
+    }
+    if (light >= render.depthLights.w) film.faults.z += 1u;
+    return min(light, render.depthLights.w - 1u);
+}
+
+// The random block of a light sample; the path has scattered already.
+uint blockOfLightSample(uint index) {
+    uint bounce = path.depth - 1u;
+    return index == 0u ? 1u + 2u * bounce : 0x80000000u | ((bounce * render.lightSamples.x + index) & 0x7FFFFFFFu);
+}
+
 // Samples a light and leaves a pending shadow ray in the path if it could contribute. Its limit; 0 without one.
-float sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
-    uvec4 random = randomBlock(1u + 2u * path.depth);
-    uint chosen = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
-    if (chosen >= render.depthLights.w) film.faults.z += 1u;
-    uint index = min(chosen, render.depthLights.w - 1u);
-    LightSample light = sampleLight(readLight(render.tableOffsets.y, index), origin,
+float sampleDirect(ShadingPoint point, uint index) {
+    uvec4 random = randomBlock(blockOfLightSample(index));
+    LightSample light = sampleLight(readLight(render.tableOffsets.y, lightOfSample(index, random)), path.ray.origin,
                                     vec2(unitReal(random.z), unitReal(random.w)));
-    bool lights = light.pdf > 0.0 && maxComponent(baseColor) > 0.0;
-    float cosine = lights ? lambertianCosine(surface.facing, surface.shading, light.direction) : 0.0;
+    bool lights = light.pdf > 0.0 && maxComponent(point.reflected) > 0.0;
+    float cosine = lights ? lambertianCosine(point.facing, point.shading, light.direction) : 0.0;
     if (cosine > 0.0) {
-        float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, lambertianPdf(cosine));
-        path.shadowRadiance = path.throughput * lambertianEval(baseColor) * light.emission * (cosine / light.pdf * weight);
+        bool onlyWay = light.delta || kLightSampling == kLightSamplingLight;
+        float weight = onlyWay ? 1.0 : misWeight(light.pdf, lambertianPdf(cosine), kBalanceHeuristic);
+        path.shadowRadiance = point.reflected * light.emission * (cosine / light.pdf * weight);
         path.shadowDirection = light.way;
         path.shadowPrimitive = light.primitive;
     } else {
@@ -162,7 +210,7 @@ float sampleDirect(Surface surface, vec3 origin, vec3 baseColor) {
 
 // Whether roulette lets the path live; it then stands for those that were ended.
 bool survivesRoulette(uint word) {
-    float survival = min(maxComponent(path.throughput), kMaxSurvival);
+    float survival = kRoulette == kRouletteConstant ? render.methods.z : min(maxComponent(path.throughput), kMaxSurvival);
     bool survives = unitReal(word) < survival;
     if (survives) path.throughput /= survival;
     return survives;
@@ -171,15 +219,22 @@ bool survivesRoulette(uint word) {
 // Chooses the next direction, unless the path ends here.
 uint scatter(Surface surface, vec3 baseColor) {
     uvec4 random = randomBlock(2u + 2u * path.depth);
+    vec2 u = vec2(unitReal(random.x), unitReal(random.y));
     float cosine;
-    path.ray.direction = lambertianSample(surface.shading, vec2(unitReal(random.x), unitReal(random.y)), cosine);
-    path.pdf = lambertianPdf(cosine);
-    path.throughput *= baseColor;
+    if (kLightSampling == kLightSamplingHemisphere) {
+        path.ray.direction = uniformHemisphereSample(surface.shading, u, cosine);
+        path.pdf = 0.5 * kInvPi;
+        path.throughput *= baseColor * (2.0 * cosine);
+    } else {
+        path.ray.direction = lambertianSample(surface.shading, u, cosine);
+        path.pdf = lambertianPdf(cosine);
+        path.throughput *= baseColor;
+    }
     ++path.depth;
     uint ending = kGoesOn;
     if (dot(path.ray.direction, surface.facing) <= 0.0 || maxComponent(path.throughput) <= 0.0) {
         ending = kEnds;
-    } else if (kRoulette && path.depth >= render.depthLights.y && !survivesRoulette(random.z)) {
+    } else if (kRoulette != kRouletteOff && path.depth >= render.depthLights.y && !survivesRoulette(random.z)) {
         ending = kEndsByRoulette;
     }
     return ending;
@@ -194,7 +249,43 @@ void goOnOrEnd() {
     }
 }
 
-void shadeHit(RayTransform transform) {
+// What integrators that look at the first hit alone answer; ambient occlusion asks one more ray.
+void shadeFirstHit(Surface surface, vec3 albedo) {
+    path.phase = kPhaseEnded;
+    if (kIntegrator == kIntegratorNormals) path.radiance = 0.5 * surface.shading + 0.5;
+    if (kIntegrator == kIntegratorAlbedo) path.radiance = albedo;
+    if (kIntegrator == kIntegratorDepth)
+        path.radiance = vec3(dot(surface.position - render.cameraPosition.xyz, render.cameraForward.xyz));
+    if (kIntegrator == kIntegratorAmbient) {
+        uvec4 random = randomBlock(2u);
+        float cosine;
+        path.shadowDirection = lambertianSample(surface.shading, vec2(unitReal(random.x), unitReal(random.y)), cosine);
+        path.shadowRadiance = vec3(1.0);
+        path.shadowPrimitive = kNone;
+        path.ending = kEnds;
+        if (dot(path.shadowDirection, surface.facing) > 0.0) {
+            path.phase = kPhaseShadow;
+            beginTraversalTo(render.methods.w);
+        } else {
+            recordEvent(kSignatureNoRay);
+        }
+    }
+}
+
+// Prepares the light samples at a surface, and the ray that leaves it.
+void shadeBounce(Surface surface, vec3 baseColor, out ShadingPoint point) {
+    point = ShadingPoint(surface.facing, surface.shading, path.throughput * lambertianEval(baseColor));
+    path.ending = scatter(surface, baseColor);
+    bool lit = kLights != kLightsNone && render.depthLights.w > 0u && countsBounce(path.depth);
+    if (lit) {
+        path.phase = kPhaseLights;
+        path.lightsLeft = kLightLoop ? render.lightSamples.x : 1u;
+    } else {
+        goOnOrEnd();
+    }
+}
+
+void shadeHit(RayTransform transform, inout ShadingPoint point) {
     Surface surface = surfaceAt(path.traversal.primitive, path.ray, transform, path.traversal.distance, kSpheres);
     recordEvent(surface.id);
     if (surface.material >= render.sceneCounts.z) film.faults.z += 1u;
@@ -203,22 +294,38 @@ void shadeHit(RayTransform transform) {
         film.mean.w += 1.0;
         if (kAovs) recordFirstHit(surface, material.baseColor.xyz);
     }
-    addEmission(surface, material, path.traversal.distance);
-    if (path.depth >= render.depthLights.x) {
+    if (kIntegrator == kIntegratorPath) addEmission(surface, material, path.traversal.distance);
+    if (kIntegrator == kIntegratorPath && path.depth >= render.depthLights.x) {
         path.phase = kPhaseEnded;
     } else {
-        vec3 origin = offsetOrigin(surface.position, surface.error, surface.facing);
-        bool lit = kLights != kLightsNone && render.depthLights.w > 0u;
-        float shadowLimit = lit ? sampleDirect(surface, origin, material.baseColor.xyz) : 0.0;
-        path.ending = scatter(surface, material.baseColor.xyz);
-        path.ray.origin = origin;
         path.leaves = surface.planar ? path.traversal.primitive : kNone;
-        if (shadowLimit > 0.0) {
-            path.phase = kPhaseShadow;
-            path.traversal = beginTraversal(shadowLimit, render.sceneCounts.x);
+        path.ray.origin = offsetOrigin(surface.position, surface.error, surface.facing);
+        if (kIntegrator == kIntegratorPath) {
+            shadeBounce(surface, material.baseColor.xyz, point);
         } else {
-            goOnOrEnd();
+            shadeFirstHit(surface, material.baseColor.xyz);
         }
+    }
+}
+
+// What follows a light sample whose shadow ray, if it needed one, is answered.
+void finishLightSample() {
+    if (kLightLoop && path.lightsLeft > 0u) {
+        path.phase = kPhaseLights;
+    } else {
+        goOnOrEnd();
+    }
+}
+
+void takeLightSample(ShadingPoint point) {
+    uint index = kLightLoop ? render.lightSamples.x - path.lightsLeft : 0u;
+    --path.lightsLeft;
+    float limit = sampleDirect(point, index);
+    if (limit > 0.0) {
+        path.phase = kPhaseShadow;
+        beginTraversalTo(limit);
+    } else {
+        finishLightSample();
     }
 }
 
@@ -226,7 +333,7 @@ void finishShadow() {
     bool reached = path.traversal.primitive == kNone;
     recordEvent(reached ? kSignatureReached : kSignatureOccluded);
     if (reached) path.radiance += path.shadowRadiance;
-    goOnOrEnd();
+    finishLightSample();
 }
 
 // The pending shadow ray and then the ray to the nearest hit, or as much of them as the budget allows. Whether that hit, or
@@ -252,19 +359,23 @@ bool traceRays(inout uint budget, out RayTransform transform) {
     return found;
 }
 
-// One bounce, or as much of it as the budget allows. Functions on this way leave at their ends only: Mesa turns an early
-// return into a loop of one iteration, which would count against its limit.
+// One bounce, or one light sample, or as much of it as the budget allows. Functions on this way leave at their ends only:
+// Mesa turns an early return into a loop of one iteration, which would count against its limit.
 void advance(inout uint budget) {
     RayTransform transform;
+    ShadingPoint point; // lives on in the path only if there is another sample to take
+    if (kLightLoop) point = path.point;
     if (traceRays(budget, transform)) {
         if (path.traversal.primitive == kNone) {
             recordEvent(kNone);
             addEnvironment();
             path.phase = kPhaseEnded;
         } else {
-            shadeHit(transform);
+            shadeHit(transform, point);
         }
     }
+    if (kLightLoop) path.point = point;
+    if (path.phase == kPhaseLights) takeLightSample(point);
     if (path.phase == kPhaseEnded) endSample();
 }
 
@@ -284,7 +395,11 @@ void loadPath(uint lane) {
     path.shadowPrimitive = record.ignored.y;
     path.shadowRadiance = record.shadowRadiance.xyz;
     path.traversal = Traversal(record.directionDistance.w, record.progress.z, record.progress.w);
-    for (uint i = 0u; i < path.traversal.stackCount; ++i) {
+    path.lightsLeft = record.bounce.w;
+    if (kLightLoop)
+        path.point = ShadingPoint(record.pointFacing.xyz, record.pointShading.xyz, record.pointReflected.xyz);
+    uint entries = kEveryPrimitive ? 0u : path.traversal.stackCount;
+    for (uint i = 0u; i < entries; ++i) {
         uvec2 entry = stacks[lane * kStackSize + i];
         stackItems[i] = entry.x;
         stackEntries[i] = uintBitsToFloat(entry.y);
@@ -294,18 +409,19 @@ void loadPath(uint lane) {
 void storePath(uint lane) {
     paths[lane] = PathRecord(vec4(path.ray.origin, path.pdf), vec4(path.ray.direction, path.traversal.distance),
                              vec4(path.throughput, 0.0), vec4(path.radiance, 0.0), vec4(path.shadowDirection, 0.0),
-                             vec4(path.shadowRadiance, 0.0),
+                             vec4(path.shadowRadiance, 0.0), vec4(path.point.facing, 0.0),
+                             vec4(path.point.shading, 0.0), vec4(path.point.reflected, 0.0),
                              uvec4(path.phase, path.sampleIndex, path.traversal.primitive, path.traversal.stackCount),
-                             uvec4(path.depth, path.ending, path.signature, 0u),
+                             uvec4(path.depth, path.ending, path.signature, path.lightsLeft),
                              uvec4(path.leaves, path.shadowPrimitive, 0u, 0u));
-    uint entries = path.phase == kPhaseDone ? 0u : path.traversal.stackCount;
+    uint entries = kEveryPrimitive || path.phase == kPhaseDone ? 0u : path.traversal.stackCount;
     for (uint i = 0u; i < entries; ++i)
         stacks[lane * kStackSize + i] = uvec2(stackItems[i], floatBitsToUint(stackEntries[i]));
 }
 
 void startOrResume(uint lane) {
     if (parameters.batch.w != 0u) {
-        film = FilmRecord(vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u));
+        film = FilmRecord(vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u), uvec4(0u));
         if (kAovs) clearAovs();
         path.sampleIndex = 0u;
         beginSample();
@@ -317,11 +433,9 @@ void startOrResume(uint lane) {
 
 void main() {
     uint lane = gl_GlobalInvocationID.x;
-    uvec2 inTile = pixelOfLane(lane);
-    pixel = parameters.tile.xy + inTile;
-    bool works = all(lessThan(inTile, parameters.tile.zw)) &&
-                 (parameters.batch.w != 0u || paths[lane].progress.x != kPhaseDone);
+    bool works = lane < parameters.lanes.x && (parameters.batch.w != 0u || paths[lane].progress.x != kPhaseDone);
     if (works) {
+        pixel = uvec2(pixels[lane] & 0xFFFFu, pixels[lane] >> 16);
         startOrResume(lane);
         uint budget = parameters.batch.z;
         while (budget > 0u && path.phase != kPhaseDone) {
@@ -329,6 +443,7 @@ void main() {
             advance(budget);
         }
         storePath(lane);
+        if (kTraversalCounts) film.tests.xy += traversalTests;
         films[lane] = film;
         if (path.phase == kPhaseDone) atomicAdd(completion.finishedLanes.x, 1u);
     }

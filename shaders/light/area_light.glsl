@@ -8,9 +8,9 @@
 
 bool emitsTwoSided(LightRecord light) { return (floatBitsToUint(light.emissionKind.w) & kLightTwoSidedBit) != 0u; }
 
-// Density in solid angle of a uniform point on a triangle.
-float trianglePdf(float choice, float area, float distanceSquared, float cosine) {
-    return choice * distanceSquared / (area * cosine);
+// Density in solid angle of a uniform point on a triangle; `samples` are expected of the light.
+float trianglePdf(float samples, float area, float distanceSquared, float cosine) {
+    return samples * distanceSquared / (area * cosine);
 }
 
 // 1 - cos of the half angle under which a sphere is seen, without cancellation (sin^2 = radius^2 / distance^2).
@@ -18,7 +18,7 @@ float sphereOneMinusCosine(float sineSquared) { return sineSquared / (1.0 + sqrt
 
 LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
     vec3 p0 = light.p0Primitive.xyz;
-    vec3 p1 = light.p1Choice.xyz;
+    vec3 p1 = light.p1Samples.xyz;
     vec3 p2 = light.p2Area.xyz;
     // Heitz 2019, "A low-distortion map between triangle and square".
     float b0 = u.y > u.x ? 0.5 * u.x : u.x - 0.5 * u.y;
@@ -35,14 +35,14 @@ LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
     float cosine = -dot(result.direction, normal); // positive: seen from the front
     bool emits = cosine > 0.0 || (cosine < 0.0 && emitsTwoSided(light));
     // An area that float cannot hold belongs to a triangle that no ray can hit either.
-    result.pdf = emits && light.p2Area.w > 0.0 ? trianglePdf(light.p1Choice.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
+    result.pdf = emits && light.p2Area.w > 0.0 ? trianglePdf(light.p1Samples.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
     result.way = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal) - from;
     return result;
 }
 
 // A point of the whole sphere, for shading points inside or on it.
 LightSample sampleSphereFromInside(LightRecord light, vec3 from, vec2 u) {
-    float radius = light.p1Choice.x;
+    float radius = light.p1Samples.x;
     float z = 1.0 - 2.0 * u.x;
     vec3 normal = vec3(2.0 * sqrt(u.x * (1.0 - u.x)) * cosSinTurn(u.y), z);
     vec3 point = light.p0Primitive.xyz + radius * normal;
@@ -53,7 +53,7 @@ LightSample sampleSphereFromInside(LightRecord light, vec3 from, vec2 u) {
     float cosine = dot(result.direction, normal); // positive: the inner face is seen
     bool emits = cosine < 0.0 || emitsTwoSided(light);
     result.pdf = emits && cosine != 0.0
-                     ? light.p1Choice.w * distanceSquared / (4.0 * kPi * radius * radius * abs(cosine)) : 0.0;
+                     ? light.p1Samples.w * distanceSquared / (4.0 * kPi * radius * radius * abs(cosine)) : 0.0;
     vec3 error = errorBound(6.0) * (abs(radius * normal) + abs(light.p0Primitive.xyz));
     result.way = offsetOrigin(point, error, cosine > 0.0 ? -normal : normal) - from;
     return result;
@@ -61,7 +61,7 @@ LightSample sampleSphereFromInside(LightRecord light, vec3 from, vec2 u) {
 
 // A direction in the cone under which the sphere is seen from outside.
 LightSample sampleSphereFromOutside(LightRecord light, vec3 from, vec2 u, float sineSquared) {
-    float radius = light.p1Choice.x;
+    float radius = light.p1Samples.x;
     vec3 toCenter = light.p0Primitive.xyz - from;
     float distanceToCenter = length(toCenter);
     float cap = sphereOneMinusCosine(sineSquared);
@@ -73,7 +73,7 @@ LightSample sampleSphereFromOutside(LightRecord light, vec3 from, vec2 u, float 
     vec2 around = sineSampled * cosSinTurn(u.y);
     LightSample result;
     result.direction = normalize(around.x * tangent + around.y * bitangent + (1.0 - oneMinusCosine) * axis);
-    result.pdf = light.p1Choice.w / (2.0 * kPi * cap);
+    result.pdf = light.p1Samples.w / (2.0 * kPi * cap);
     // Where the direction meets the sphere: nearer than the closest approach by the half chord.
     float halfChord = sqrt(max(radius * radius - distanceToCenter * distanceToCenter * sineSampled * sineSampled, 0.0));
     vec3 onRay = from + (distanceToCenter * (1.0 - oneMinusCosine) - halfChord) * result.direction;
@@ -86,7 +86,7 @@ LightSample sampleSphereFromOutside(LightRecord light, vec3 from, vec2 u, float 
 // sin^2 of the half angle of a sphere light seen from a point; 1 or more from inside.
 float sphereSineSquared(LightRecord light, vec3 from) {
     vec3 toCenter = light.p0Primitive.xyz - from;
-    return light.p1Choice.x * light.p1Choice.x / dot(toCenter, toCenter);
+    return light.p1Samples.x * light.p1Samples.x / dot(toCenter, toCenter);
 }
 
 LightSample sampleAreaLight(LightRecord light, vec3 from, vec2 u) {
@@ -111,12 +111,12 @@ LightSample sampleAreaLight(LightRecord light, vec3 from, vec2 u) {
 // The density with which sampleAreaLight would have chosen the point of a light that a ray from `from` has hit.
 float areaLightPdf(LightRecord light, vec3 from, float distance, float cosine) {
     float sineSquared = sphereSineSquared(light, from);
-    float radius = light.p1Choice.x;
-    float fromOutside = light.p1Choice.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared));
-    float fromInside = light.p1Choice.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
+    float radius = light.p1Samples.x;
+    float fromOutside = light.p1Samples.w / (2.0 * kPi * sphereOneMinusCosine(sineSquared));
+    float fromInside = light.p1Samples.w * distance * distance / (4.0 * kPi * radius * radius * cosine);
     float ofSphere = sineSquared < 1.0 ? fromOutside : fromInside;
     bool triangle = (floatBitsToUint(light.emissionKind.w) & kLightKindMask) == kLightTriangle;
-    return triangle ? trianglePdf(light.p1Choice.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
+    return triangle ? trianglePdf(light.p1Samples.w, light.p2Area.w, distance * distance, cosine) : ofSphere;
 }
 
 #endif

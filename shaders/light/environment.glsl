@@ -14,7 +14,7 @@ LightSample sampleEnvironment(LightRecord light, vec2 u) {
     result.direction = vec3(around.x, 1.0 - oneMinusY, around.y);
     result.way = result.direction;
     result.limit = kFarthest;
-    result.pdf = light.p1Choice.w / (2.0 * kPi * range);
+    result.pdf = light.p1Samples.w / (2.0 * kPi * range);
     result.emission = light.emissionKind.xyz;
     result.delta = false;
     result.primitive = kNone;

@@ -8,7 +8,7 @@
 // The share of a spot's intensity in a direction: the square of a ramp in the cosine between the cones. By 1 - cosine,
 // half the squared distance of two unit vectors, since the cosines of narrow cones are all 1 in single precision.
 float spotAttenuation(LightRecord light, vec3 fromLight) {
-    vec3 apart = fromLight - light.p1Choice.xyz;
+    vec3 apart = fromLight - light.p1Samples.xyz;
     float t = clamp((light.p2Area.x - 0.5 * dot(apart, apart)) * light.p2Area.y, 0.0, 1.0);
     return t * t;
 }
@@ -23,12 +23,12 @@ LightSample samplePunctualLight(LightRecord light, vec3 from) {
     float slack = errorBound(64.0) * (maxComponent(abs(light.p0Primitive.xyz)) + maxComponent(abs(from)));
     float shortened = max(1.0 - slack * inversesqrt(distanceSquared), 1e-30);
     LightSample result;
-    result.way = directional ? -light.p1Choice.xyz : toLight;
+    result.way = directional ? -light.p1Samples.xyz : toLight;
     result.limit = directional ? kFarthest : shortened;
-    result.direction = directional ? -light.p1Choice.xyz : toLight * inversesqrt(distanceSquared);
+    result.direction = directional ? -light.p1Samples.xyz : toLight * inversesqrt(distanceSquared);
     float share = kind == kLightSpot ? spotAttenuation(light, -result.direction) : 1.0;
     result.emission = light.emissionKind.xyz * (directional ? 1.0 : share / distanceSquared);
-    result.pdf = share > 0.0 && (directional || distanceSquared > 0.0) ? light.p1Choice.w : 0.0;
+    result.pdf = share > 0.0 && (directional || distanceSquared > 0.0) ? light.p1Samples.w : 0.0;
     result.delta = true;
     result.primitive = kNone;
     return result;

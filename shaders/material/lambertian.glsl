@@ -14,19 +14,23 @@ vec3 lambertianEval(vec3 baseColor) { return baseColor * kInvPi; }
 // Solid-angle density of cosine-weighted sampling.
 float lambertianPdf(float cosine) { return cosine * kInvPi; }
 
-// Cosine-weighted direction about the shading normal by the concentric map (Shirley and Chiu 1997); cosine is exact
-// for grazing directions too.
+// Cosine-weighted direction about the shading normal; cosine is exact for grazing directions too.
 vec3 lambertianSample(vec3 shading, vec2 u, out float cosine) {
-    vec2 d = 2.0 * u - 1.0;
-    bool byX = abs(d.x) > abs(d.y);
-    float radius = byX ? d.x : d.y;
-    float other = byX ? d.y : d.x;
-    vec2 sc = sinCosOctant(radius == 0.0 ? 0.0 : 0.25 * kPi * (other / radius));
-    vec2 disk = radius * (byX ? sc.yx : sc.xy);
+    float radius;
+    vec2 disk = concentricDisk(u, radius);
     cosine = sqrt((1.0 - abs(radius)) * (1.0 + abs(radius)));
     vec3 tangent, bitangent;
     frameAbout(shading, tangent, bitangent);
     return disk.x * tangent + disk.y * bitangent + cosine * shading;
+}
+
+// Uniform direction in the hemisphere about the shading normal, of density 1 / (2 pi): what a surface knows nothing of.
+vec3 uniformHemisphereSample(vec3 shading, vec2 u, out float cosine) {
+    cosine = u.x;
+    vec2 around = sqrt((1.0 - u.x) * (1.0 + u.x)) * cosSinTurn(u.y);
+    vec3 tangent, bitangent;
+    frameAbout(shading, tangent, bitangent);
+    return around.x * tangent + around.y * bitangent + cosine * shading;
 }
 
 #endif

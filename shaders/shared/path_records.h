@@ -14,11 +14,14 @@ struct PathRecord {
     vec4 radiance;          // w unused
     vec4 shadowDirection;   // from the origin to the light's point, or towards a light at infinity; w unused
     vec4 shadowRadiance;    // what arrives if nothing is in between; w unused
+    vec4 pointFacing;       // the point whose lights are being sampled, if there are several samples: normals,
+    vec4 pointShading;
+    vec4 pointReflected;    // throughput times reflectance
     uvec4 progress;         // phase, sample within the batch, nearest primitive found so far, entries on the stack
-    uvec4 bounce;           // bounces so far, ending, path signature; w unused
+    uvec4 bounce;           // bounces so far, ending, path signature, light samples still to be taken
     uvec4 ignored;          // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
 };
-ISOLUX_CHECK_SIZE(PathRecord, 144);
+ISOLUX_CHECK_SIZE(PathRecord, 192);
 
 // Statistics of one batch of samples of one pixel.
 struct FilmRecord {
@@ -26,11 +29,13 @@ struct FilmRecord {
     vec4 squaredDeviation; // rgb, luminance
     uvec4 counts;          // samples, rays, sum of path signatures, samples that were NaN or infinite
     uvec4 faults;          // negative samples, stack overflows, invalid indices; w unused
+    uvec4 tests;           // boxes and primitives that rays were tested against, if counted; z, w unused
 };
-ISOLUX_CHECK_SIZE(FilmRecord, 64);
+ISOLUX_CHECK_SIZE(FilmRecord, 80);
+
+ISOLUX_CONSTANT uint kBatchSamples = 16u; // at most
 
 // What the camera rays of a batch met first. Sums over the samples that met a surface.
-ISOLUX_CONSTANT uint kAovBatchSamples = 16u;
 struct AovRecord {
     vec4 albedoDepth;     // w: depth along the camera's axis, in device space
     vec4 normal;          // w unused
@@ -38,25 +43,36 @@ struct AovRecord {
 };
 ISOLUX_CHECK_SIZE(AovRecord, 96);
 
+// The radiance of each sample of a batch, where the host needs them one by one.
+struct SampleRecord {
+    vec4 radiance[kBatchSamples]; // w unused
+};
+ISOLUX_CHECK_SIZE(SampleRecord, 256);
+
 // Constant over a render.
 struct RenderParameters {
     vec4 cameraPosition;    // device space; w: 1 for an orthographic camera, else 0
     vec4 cameraRight;       // to the image's right edge: for a perspective camera at unit distance
     vec4 cameraUp;          // to its top edge
     vec4 cameraForward;     // unit
+    vec4 lensRight;         // unit, as cameraRight and cameraUp are not
+    vec4 lensUp;
     vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it
     vec4 environmentLimits; // x: it emits from directions with y above this alone; y, z, w unused
     uvec4 imageSeed;        // width, height, seed low, seed high
-    uvec4 depthLights;      // maximum depth, roulette start, bits of the alias table, number of lights
-    uvec4 tableOffsets;     // first word of materials, lights, light bins in the tables buffer; w unused
-    uvec4 sceneCounts;      // x: nodes, z: materials; y, w unused
+    vec4 methods;           // radius of the lens, 1/focus distance, roulette's constant survival, reach of ambient occluders
+    uvec4 depthLights;      // last bounce, roulette start, bits of the alias table, number of lights
+    uvec4 lightSamples;     // samples a shading point; with kSpecAllLights: of each area light, area lights, punctual lights
+    uvec4 tableOffsets;     // first word of materials, lights, light bins, filter quantiles in the tables buffer
+    uvec4 sceneCounts;      // nodes, primitives, materials; w unused
+    uvec4 sampling;         // x: first bounce that counts, y: cell bits of the sampler; z, w unused
 };
-ISOLUX_CHECK_SIZE(RenderParameters, 160);
+ISOLUX_CHECK_SIZE(RenderParameters, 240);
 
 // Changes with every dispatch.
 struct DispatchParameters {
-    uvec4 tile;  // first pixel x, y; width, height in pixels
     uvec4 batch; // first sample, samples, step budget, 1 if the paths are to be started afresh
+    uvec4 lanes; // x: pixels in the list; others unused
 };
 ISOLUX_CHECK_SIZE(DispatchParameters, 32);
 
@@ -69,8 +85,9 @@ ISOLUX_CHECK_SIZE(CompletionRecord, 16);
 // PathRecord.progress.x
 ISOLUX_CONSTANT uint kPhaseNearest = 0u; // the next ray looks for the nearest hit
 ISOLUX_CONSTANT uint kPhaseShadow = 1u;  // the next ray asks whether the light is seen
-ISOLUX_CONSTANT uint kPhaseEnded = 2u;   // the sample is complete; never stored
-ISOLUX_CONSTANT uint kPhaseDone = 3u;    // all samples of the batch are on the film
+ISOLUX_CONSTANT uint kPhaseLights = 2u;  // a light is to be sampled
+ISOLUX_CONSTANT uint kPhaseEnded = 3u;   // the sample is complete; never stored
+ISOLUX_CONSTANT uint kPhaseDone = 4u;    // all samples of the batch are on the film
 
 // PathRecord.bounce.y: what follows the pending shadow ray
 ISOLUX_CONSTANT uint kGoesOn = 0u;

@@ -46,7 +46,7 @@ ISOLUX_CHECK_SIZE(MaterialRecord, 32);
 //   environment   p2.x = 1 - y of the lowest direction that emits
 struct LightRecord {
     vec4 p0Primitive;  // w: index of its PrimitiveRecord or kNone, as bits
-    vec4 p1Choice;     // w: probability of choosing this light
+    vec4 p1Samples;    // w: expected number of samples of this light at a shading point
     vec4 p2Area;       // w: area of a triangle
     vec4 emissionKind; // device radiance, or what a punctual light sends; w: one of kLight..., as bits
 };
@@ -57,6 +57,12 @@ struct LightBinRecord {
     uvec4 thresholdAlias; // x: threshold, y: alias; z, w unused
 };
 ISOLUX_CHECK_SIZE(LightBinRecord, 16);
+
+// Two cells of a pixel filter's table (host/scene/pixel_filter.h).
+struct FilterCellsRecord {
+    vec4 offsets; // from x to y in the first, from z to w in the second
+};
+ISOLUX_CHECK_SIZE(FilterCellsRecord, 16);
 
 ISOLUX_CONSTANT uint kNone = 0xFFFFFFFFu;
 ISOLUX_CONSTANT uint kSphereBit = 0x80000000u;
@@ -76,6 +82,7 @@ ISOLUX_CONSTANT uint kPrimitiveWords = 3u;
 ISOLUX_CONSTANT uint kNormalWords = 3u;
 ISOLUX_CONSTANT uint kMaterialWords = 2u;
 ISOLUX_CONSTANT uint kLightWords = 4u;
+ISOLUX_CONSTANT uint kFilterCells = 256u;
 
 // A child slot of a node: host/accel/wide_bvh.h, WideChild.
 ISOLUX_CONSTANT uint kEmptyChild = 0xFFFFFFFFu;

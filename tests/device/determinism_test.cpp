@@ -128,7 +128,7 @@ TEST_F(Determinism, AnInterruptedRenderKeepsWholeTiles) {
     renderer.render(film, [](double fraction) { return fraction > 0.4 ? Continue::no : Continue::yes; });
     EXPECT_GT(film.minSampleCount(), 0u);
     EXPECT_LT(film.minSampleCount(), settings.sampleCount);
-    for (const PixelStatistics& pixel : film.pixels) EXPECT_EQ(pixel.sampleCount % kBatchSamples, 0u);
+    for (const PixelStatistics& pixel : film.pixels) EXPECT_EQ(pixel.sampleCount % SamplePlan::kLargestPass, 0u);
 }
 
 /// A time limit decides how many samples there are, and nothing else: every pixel has as many, at least one.
@@ -138,7 +138,7 @@ TEST_F(Determinism, ATimeLimitStopsAllPixelsAtTheSameSample) {
     RenderOptions options;
     options.maxLanes = 1024;
     for (const double seconds : {0.0, 1.0}) {
-        options.seconds = seconds;
+        options.stopping.seconds = seconds;
         const Film film = render(scene, settings, options);
         EXPECT_GE(film.minSampleCount(), 1u);
         EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());

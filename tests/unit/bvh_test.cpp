@@ -99,12 +99,15 @@ std::size_t fullWalkStack(const WideBvh& wide) {
 class BvhCases : public ::testing::TestWithParam<std::vector<Box3f>> {};
 
 TEST_P(BvhCases, BinaryAndWideTreesAreValid) {
-    const BvhOptions options;
-    const Bvh bvh = buildBvh(GetParam(), options);
-    expectValid(bvh, GetParam(), options);
-    const WideBvh wide = buildWideBvh(bvh);
-    expectValid(wide, GetParam());
-    EXPECT_LE(fullWalkStack(wide), wide.stackBound);
+    for (const SplitMethod split : {SplitMethod::surfaceArea, SplitMethod::mean})
+        for (const std::uint32_t maxLeafSize : {1u, 4u, 8u}) {
+            const BvhOptions options{split, maxLeafSize};
+            const Bvh bvh = buildBvh(GetParam(), options);
+            expectValid(bvh, GetParam(), options);
+            const WideBvh wide = buildWideBvh(bvh);
+            expectValid(wide, GetParam());
+            EXPECT_LE(fullWalkStack(wide), wide.stackBound);
+        }
 }
 
 /// n boxes, each twice as far out and twice as large as the one before: SAH peels them off one by one.
@@ -135,18 +138,71 @@ INSTANTIATE_TEST_SUITE_P(Boxes, BvhCases,
                                            repeated(9, Vec3f(-1e30f), Vec3f(1e30f)),
                                            repeated(9, Vec3f(1e-38f), Vec3f(3e-38f))));
 
+void expectSame(const Bvh& a, const Bvh& b) {
+    EXPECT_EQ(a.primitives, b.primitives);
+    ASSERT_EQ(a.nodes.size(), b.nodes.size());
+    for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+        EXPECT_EQ(a.nodes[i].first, b.nodes[i].first);
+        EXPECT_EQ(a.nodes[i].count, b.nodes[i].count);
+        EXPECT_EQ(a.nodes[i].bounds.lower, b.nodes[i].bounds.lower);
+        EXPECT_EQ(a.nodes[i].bounds.upper, b.nodes[i].bounds.upper);
+    }
+}
+
 TEST(Bvh, DoesNotDependOnTheNumberOfThreads) {
     const std::vector<Box3f> boxes = randomBoxes(30'000, 0.05f, 7);
-    const Bvh parallel = buildBvh(boxes);
-    const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
-    const Bvh serial = buildBvh(boxes);
-    EXPECT_EQ(parallel.primitives, serial.primitives);
-    ASSERT_EQ(parallel.nodes.size(), serial.nodes.size());
-    for (std::size_t i = 0; i < serial.nodes.size(); ++i) {
-        EXPECT_EQ(parallel.nodes[i].first, serial.nodes[i].first);
-        EXPECT_EQ(parallel.nodes[i].count, serial.nodes[i].count);
-        EXPECT_EQ(parallel.nodes[i].bounds.lower, serial.nodes[i].bounds.lower);
-        EXPECT_EQ(parallel.nodes[i].bounds.upper, serial.nodes[i].bounds.upper);
+    for (const SplitMethod split : {SplitMethod::surfaceArea, SplitMethod::mean}) {
+        const Bvh parallel = buildBvh(boxes, {split});
+        const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+        expectSame(parallel, buildBvh(boxes, {split}));
+    }
+}
+
+/// Boxes that are points at these places.
+std::vector<Box3f> pointsAt(const std::vector<Vec3f>& places) {
+    std::vector<Box3f> boxes(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) boxes[i].extend(places[i]);
+    return boxes;
+}
+
+/// x: one of eight below the mean; y: four; z: all equal.
+TEST(Bvh, MeanSplitTakesTheMostBalancedAxis) {
+    const std::vector<Box3f> boxes = pointsAt({{-9, 0, 1},
+                                               {2, 0, 1},
+                                               {2, 0, 1},
+                                               {2, 0, 1}, //
+                                               {2, 1, 1},
+                                               {2, 1, 1},
+                                               {2, 1, 1},
+                                               {2, 2, 1}});
+    const Bvh bvh = buildBvh(boxes, {SplitMethod::mean, 4});
+    ASSERT_EQ(bvh.nodes.size(), 3u);
+    EXPECT_EQ(bvh.nodes[1].count, 4u);
+    EXPECT_EQ(bvh.nodes[1].bounds.upper.y, 0.0f);
+    EXPECT_EQ(bvh.nodes[2].count, 4u);
+    EXPECT_EQ(bvh.nodes[2].bounds.lower.y, 1.0f);
+}
+
+/// On a line the mean of the rest is what divides every node.
+TEST(Bvh, MeanSplitDividesAtTheMeanUntilLeavesAreSmall) {
+    const std::vector<Box3f> boxes = pointsAt({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {100, 0, 0}});
+    const Bvh bvh = buildBvh(boxes, {SplitMethod::mean, 2}); // means 21.2 and 1.5
+    ASSERT_EQ(bvh.nodes.size(), 5u);
+    EXPECT_EQ(bvh.primitives, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
+    EXPECT_EQ(bvh.nodes[1].first, 3u) << "the first four are an inner node";
+    EXPECT_EQ(bvh.nodes[2].count, 1u);
+    EXPECT_EQ(bvh.nodes[3].count, 2u);
+    EXPECT_EQ(bvh.nodes[4].count, 2u);
+}
+
+/// The cost of a random ray is what the surface area heuristic is about.
+TEST(Bvh, SurfaceAreaHeuristicCostsLessThanTheMean) {
+    for (const float size : {0.02f, 0.5f, 2.0f}) {
+        std::vector<Box3f> boxes = randomBoxes(10'000, size, 9);
+        const std::vector<Box3f> small = randomBoxes(10'000, 0.001f, 10); // sizes that differ
+        boxes.insert(boxes.end(), small.begin(), small.end());
+        EXPECT_LT(statistics(buildBvh(boxes)).sahCost, statistics(buildBvh(boxes, {SplitMethod::mean})).sahCost)
+            << size;
     }
 }
 

@@ -6,25 +6,34 @@ namespace isolux {
 namespace {
 
 void expectCovers(const Tile& region, std::uint32_t maxLanes) {
-    const Schedule schedule = makeSchedule(region, {maxLanes});
-    std::vector<int> covered(std::size_t{region.width} * region.height, 0);
-    for (const Tile& tile : schedule.tiles) {
-        EXPECT_LE(tile.laneCount(), std::max(maxLanes, 64u));
-        EXPECT_LE(tile.laneCount(), schedule.maxLaneCount);
-        for (std::uint32_t y = tile.y; y < tile.y + tile.height; ++y)
-            for (std::uint32_t x = tile.x; x < tile.x + tile.width; ++x)
-                ++covered.at(std::size_t{y - region.y} * region.width + (x - region.x));
+    std::vector<int> covered(region.pixelCount(), 0);
+    for (const std::uint32_t pixel : orderPixels(region, maxLanes)) {
+        const std::uint32_t x = pixelX(pixel) - region.x;
+        const std::uint32_t y = pixelY(pixel) - region.y;
+        ASSERT_TRUE(x < region.width && y < region.height);
+        ++covered.at(std::size_t{y} * region.width + x);
     }
     for (const int count : covered) EXPECT_EQ(count, 1);
 }
 
-TEST(Schedule, TilesCoverEveryPixelOnce) {
+TEST(Schedule, EveryPixelHasOnePlace) {
     expectCovers({0, 0, 1, 1}, 1 << 14);
     expectCovers({0, 0, 640, 480}, 1 << 14);
     expectCovers({3, 7, 100, 99}, 1024);
     expectCovers({0, 0, 16384, 1}, 1 << 14);
     expectCovers({0, 0, 1, 9000}, 4096);
     expectCovers({0, 0, 33, 33}, 64);
+}
+
+TEST(Schedule, NeighbouringLanesSeeNeighbouringPixels) {
+    const std::vector<std::uint32_t> pixels = orderPixels({0, 0, 640, 480}, 1 << 14);
+    for (std::size_t block = 0; block < pixels.size(); block += 64)
+        for (std::size_t i = 0; i < 64; ++i) {
+            ASSERT_EQ(pixelX(pixels[block + i]), pixelX(pixels[block]) + i % 8);
+            ASSERT_EQ(pixelY(pixels[block + i]), pixelY(pixels[block]) + i / 8);
+        }
+    // A dispatch of all lanes is a square of the image.
+    EXPECT_EQ(pixels[(1 << 14) - 1], packPixel(127, 127));
 }
 
 TEST(Schedule, BudgetsStayBelowTheLoopLimitOfEveryDriver) {

@@ -36,23 +36,28 @@ TEST(StructLayout, PathKernel) {
     expectLayout(module, "PathRecord",
                  {MEMBER(PathRecord, originPdf), MEMBER(PathRecord, directionDistance), MEMBER(PathRecord, throughput),
                   MEMBER(PathRecord, radiance), MEMBER(PathRecord, shadowDirection), MEMBER(PathRecord, shadowRadiance),
+                  MEMBER(PathRecord, pointFacing), MEMBER(PathRecord, pointShading), MEMBER(PathRecord, pointReflected),
                   MEMBER(PathRecord, progress), MEMBER(PathRecord, bounce), MEMBER(PathRecord, ignored)},
                  sizeof(shared::PathRecord));
     expectLayout(module, "FilmRecord",
                  {MEMBER(FilmRecord, mean), MEMBER(FilmRecord, squaredDeviation), MEMBER(FilmRecord, counts),
-                  MEMBER(FilmRecord, faults)},
+                  MEMBER(FilmRecord, faults), MEMBER(FilmRecord, tests)},
                  sizeof(shared::FilmRecord));
+    expectLayout(module, "SampleRecord", {MEMBER(SampleRecord, radiance)}, sizeof(shared::SampleRecord));
     expectLayout(module, "AovRecord",
                  {MEMBER(AovRecord, albedoDepth), MEMBER(AovRecord, normal), MEMBER(AovRecord, primitiveId)},
                  sizeof(shared::AovRecord));
     expectLayout(module, "RenderParameters",
                  {MEMBER(RenderParameters, cameraPosition), MEMBER(RenderParameters, cameraRight),
                   MEMBER(RenderParameters, cameraUp), MEMBER(RenderParameters, cameraForward),
+                  MEMBER(RenderParameters, lensRight), MEMBER(RenderParameters, lensUp),
                   MEMBER(RenderParameters, environment), MEMBER(RenderParameters, environmentLimits),
-                  MEMBER(RenderParameters, imageSeed), MEMBER(RenderParameters, depthLights),
-                  MEMBER(RenderParameters, tableOffsets), MEMBER(RenderParameters, sceneCounts)},
+                  MEMBER(RenderParameters, methods), MEMBER(RenderParameters, imageSeed),
+                  MEMBER(RenderParameters, depthLights), MEMBER(RenderParameters, lightSamples),
+                  MEMBER(RenderParameters, tableOffsets), MEMBER(RenderParameters, sceneCounts),
+                  MEMBER(RenderParameters, sampling)},
                  sizeof(shared::RenderParameters));
-    expectLayout(module, "DispatchParameters", {MEMBER(DispatchParameters, tile), MEMBER(DispatchParameters, batch)},
+    expectLayout(module, "DispatchParameters", {MEMBER(DispatchParameters, batch), MEMBER(DispatchParameters, lanes)},
                  sizeof(shared::DispatchParameters));
     expectLayout(module, "CompletionRecord", {MEMBER(CompletionRecord, finishedLanes)},
                  sizeof(shared::CompletionRecord));

@@ -1,0 +1,98 @@
+// What every integrator does: the random words of a sample, its camera ray, the surfaces that rays meet, what is
+// counted.
+#pragma once
+
+#include "core/sample_sequence.h"
+#include "film/film.h"
+#include "reference/camera.h"
+#include "reference/surface.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace isolux {
+
+/// What one sample of one pixel leaves.
+template <typename Real> struct PathResult {
+    Vec3<Real> radiance{0};                ///< or whatever else the integrator measures
+    std::uint32_t signature = 2166136261u; ///< FNV-1a of the path's discrete events
+    std::uint64_t rays = 0;
+    std::uint64_t cameraHits = 0; ///< 1 if the camera ray met a surface, or an environment that emits there
+    TraversalTests tests;
+    std::optional<FirstHit> firstHit;
+
+    void record(std::uint32_t event) { signature = (signature ^ event) * 16777619u; }
+};
+
+/// The random words of one sample of one pixel.
+struct SampleStream {
+    PixelSampler sampler;
+    SequencePlan plan;
+    SampleIndex index;
+
+    [[nodiscard]] PhiloxBlock block(std::uint32_t number) const {
+        switch (sampler) {
+        case PixelSampler::independent: return independentBlock(plan, index, number);
+        case PixelSampler::stratified: return stratifiedBlock(plan, index, number);
+        case PixelSampler::sobol: return sobolBlock(plan, index, number);
+        case PixelSampler::sobolBlueNoise: return sobolBlueNoiseBlock(plan, index, number);
+        }
+        return {};
+    }
+};
+
+/// Keeps references; safe to use from many threads.
+template <typename Real> class Tracing {
+public:
+    Tracing(const Scene& scene, const World<Real>& world, const RenderSettings& settings, SideRule sides)
+        : scene_(scene), world_(world), sampler_(settings.sampler), plan_{settings.seed, cellBitsOf(settings)},
+          sides_(sides), camera_(scene.cameras[settings.camera], settings), caster_(world, settings.intersection) {}
+
+    [[nodiscard]] SampleStream stream(const SampleIndex& index) const { return {sampler_, plan_, index}; }
+
+    [[nodiscard]] Ray<Real> cameraRay(const SampleStream& stream) const {
+        return camera_.sample(stream.index.x, stream.index.y, stream.block(0));
+    }
+
+    [[nodiscard]] std::optional<Surface<Real>> findSurface(const Ray<Real>& ray, PathResult<Real>& result) const {
+        ++result.rays;
+        const std::optional<Hit<Real>> hit = caster_.nearest(ray, result.tests);
+        result.record(hit ? hit->primitive : kNoPrimitive);
+        if (!hit) return std::nullopt;
+        Surface<Real> surface = surfaceAt(world_, ray, *hit);
+        if (sides_ == SideRule::shading && glm::dot(surface.ns, surface.wo) < 0) surface.ns = -surface.ns;
+        return surface;
+    }
+
+    [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored, PathResult<Real>& result) const {
+        ++result.rays;
+        return caster_.visibility(ray, ignored, result.tests);
+    }
+
+    void noteFirstHit(PathResult<Real>& result, const Surface<Real>& surface) const {
+        result.cameraHits = 1;
+        result.firstHit = FirstHit{materialAt(surface).baseColor, Vec3d(surface.ns),
+                                   static_cast<double>(depthOf(surface)), world_.objectOf(surface.primitive)};
+    }
+
+    /// Whether scattering reaches a direction as far as the geometric normal is asked.
+    [[nodiscard]] bool onOurSide(const Surface<Real>& surface, const Vec3<Real>& wi) const {
+        return sides_ == SideRule::shading || glm::dot(wi, surface.facing) > 0;
+    }
+
+    [[nodiscard]] const Material& materialAt(const Surface<Real>& surface) const {
+        return scene_.materials[surface.material];
+    }
+    [[nodiscard]] Real depthOf(const Surface<Real>& surface) const { return camera_.depth(surface.position); }
+
+private:
+    const Scene& scene_;
+    const World<Real>& world_;
+    PixelSampler sampler_;
+    SequencePlan plan_;
+    SideRule sides_;
+    CameraRays<Real> camera_;
+    RayCaster<Real> caster_;
+};
+
+} // namespace isolux
