@@ -51,10 +51,10 @@ class Statistics(unittest.TestCase):
         self.assertGreaterEqual(inside, 80)
 
     def test_noise_is_subtracted_and_never_clamped(self):
-        error = study_runs.Error(raw_mse=0.5, reference_variance=0.54, reference_mean=2.0, relative_bias=0.0)
+        error = study_runs.Error(raw_mse=0.5, reference_variance=0.54, reference_mean=2.0)
         self.assertAlmostEqual(error.relative_rmse, -0.1)
         self.assertTrue(error.flagged)
-        self.assertFalse(study_runs.Error(1.0, 0.009, 2.0, 0.0).flagged)
+        self.assertFalse(study_runs.Error(1.0, 0.009, 2.0).flagged)
 
 
 class Text(unittest.TestCase):

@@ -4,11 +4,15 @@ import statistics
 
 from study_exr import luminance, read_channels
 from study_plan import FULL_DEPTH, depth
-from study_statistics import inefficiency_ratio, mean_interval
-from study_text import flag, interval, number, percent, pictures_block, section, seconds, table_block, text_block, times
+from study_statistics import inefficiency_ratio, mean_interval, t_quantile
+from study_text import (interval, number, percent, pictures_block, section, seconds, surface_error, table_block, text_block,
+                        times, whole_error)
 
 CHANNELS = ["R", "G", "B", "samples.Y"]
 FULL = depth(FULL_DEPTH)
+
+# Of a render whose samples depend on each other (host/scene/render_settings.h).
+REPLICATES = 16
 
 # Of an interval of 1.96 standard errors.
 CONFIDENCE = 0.95
@@ -38,10 +42,11 @@ def mean_coverage(measured, reference, tolerance):
 
 
 def mean_bias(measured, reference):
-    """Of the image's mean luminance, relative: t interval over seeds, with the reference's own error."""
+    """Of the image's mean luminance, relative: t interval over seeds, with the reference's own error, whose interval comes
+    from its replicates."""
     low, mean, high = reference.report["meanLuminance"]
-    own = (high - low) / (2 * statistics.NormalDist().inv_cdf(0.975) * mean)
-    return mean_interval([error.relative_bias for error in measured.errors], own)
+    own = (high - low) / (2 * t_quantile(REPLICATES - 1) * mean)
+    return mean_interval([one.relative_bias for one in measured.compared], own)
 
 
 def adaptive_requests(study, scene, tolerance):
@@ -73,11 +78,11 @@ def method_row(scene, entry, method):
     return [scene.stem, percent(entry["tolerance"]), method, number(statistics.fmean(run.spp for run in measured.runs)),
             seconds(measured.median_seconds), percent(found["atMaximum"]) if method == "adaptive" else "–",
             percent(found["within"]), percent(found["withinOfStopped"]) if method == "adaptive" else "–",
-            interval(measured.relative_rmse, percent) + flag(measured), interval(entry[method + "Bias"], percent)]
+            whole_error(measured), surface_error(measured), interval(entry[method + "Bias"], percent)]
 
 
 HEAD = ["scene", "tolerance", "method", "mean spp", "time", "pixels at the maximum", "within tolerance",
-        "of those that stopped", "relative RMSE", "bias of the mean"]
+        "of those that stopped", "error, whole image", "error on surfaces", "bias of the mean"]
 
 
 def against_uniform(entry):
@@ -89,8 +94,8 @@ def against_uniform(entry):
 def scene_pictures(study, entry):
     adaptive, uniform = entry["adaptive"], entry["uniform"]
     run = adaptive.runs[0]
-    return [study.picture(run, "adaptive", adaptive.errors[0]),
-            study.picture(uniform.runs[0], "uniform, equal time", uniform.errors[0]),
+    return [study.picture(run, "adaptive", adaptive.compared[0]),
+            study.picture(uniform.runs[0], "uniform, equal time", uniform.compared[0]),
             study.picture(run, "samples a pixel", image=run.sample_map)]
 
 
@@ -110,7 +115,7 @@ def adaptive_words(figures):
         sure = low is not None and (low > 0 or high < 0)
         stopped = "no pixel stopped" if share is None else f"of the pixels that stopped {percent(share)} are within it"
         parts.append(f"{one['scene']} at {percent(one['tolerance'])}: {stopped}, the mean is {percent(bias)} off"
-                     f"{'' if sure else ', which the interval does not tell from none'}; time for uniform's RMSE "
+                     f"{'' if sure else ', which the interval does not tell from none'}; time for uniform's error on surfaces "
                      f"{times(one['timeForErrorOfUniform'][1])}.")
     return " ".join(parts)
 
@@ -127,8 +132,8 @@ def adaptive_section(study):
             blocks.append(pictures_block(caption, scene_pictures(study, entry)))
     command = f"isolux render SCENE -o image.exr --sample-map samples.png --spp {most} --max-depth {FULL_DEPTH} --adaptive T"
     table = table_block(
-        f"A pixel stops when 1.96 standard errors of its luminance are at most the tolerance times its mean, tested every 32 "
-        f"samples from the 64th on, and at {most}. Within tolerance: the share of the lit pixels whose luminance x has "
+        f"A pixel stops when 1.96 standard errors of its luminance are at most the tolerance times its mean, and those of its "
+        f"neighbours of theirs, tested every 32 samples from the 64th on; all stop at {most}. Within tolerance: the share of the lit pixels whose luminance x has "
         f"|x − r| ≤ tolerance · r against the reference r; {percent(CONFIDENCE)} is what the rule promises of those that "
         f"stopped, less what the reference's own noise takes. Relative RMSE and the bias of the mean: over "
         f"{study.effort.adaptive_seeds} seeds [95 %, t].", HEAD, rows,
@@ -148,7 +153,7 @@ def gallery_section(study):
     items = []
     for scene in study.scenes.gallery:
         run = study.runner.render(study.request(scene, FULL, study.effort.gallery_spp))
-        error, = study.runner.errors([run], study.reference(scene, FULL))
-        items.append(study.picture(run, scene.stem, error))
+        compared, = study.runner.compared([run], study.reference(scene, FULL))
+        items.append(study.picture(run, scene.stem, compared))
     block = pictures_block("The scenes of the report's part on global illumination", items)
     return section("gallery", "Global illumination: bunny, dragon, blob, bench", [block], {"scenes": len(items)}, [])

@@ -2,8 +2,8 @@
 
 from study_plan import depth, depth_name
 from study_statistics import inefficiency_ratio
-from study_text import (chart_block, flag, interval, number, percent, pictures_block, section, seconds, series, table_block,
-                        text_block)
+from study_text import (chart_block, error_point, interval, number, percent, pictures_block, section, seconds, series,
+                        surface_error, table_block, text_block, whole_error)
 
 METHODS = {"hemisphere": "uniform hemisphere", "light": "light sampling", "mis": "MIS"}
 BEST = "mis"
@@ -39,18 +39,19 @@ def method_rows(scene, bounces, by_samples, by_time):
         samples, timed = by_samples[method], by_time[method]
         ratio = "1" if method == BEST else interval(same_error_time(by_samples, method))
         yield [f"{scene.stem}, {depth_name(bounces)}", name, number(samples.runs[0].spp), seconds(samples.median_seconds),
-               interval(samples.relative_rmse, percent) + flag(samples), ratio, number(timed.runs[0].spp),
-               seconds(timed.median_seconds), interval(timed.relative_rmse, percent) + flag(timed)]
+               whole_error(samples), surface_error(samples), ratio, number(timed.runs[0].spp),
+               seconds(timed.median_seconds), surface_error(timed)]
 
 
-HEAD = ["scene", "method", "spp", "time", "error at equal spp", "time for the error of MIS", "spp at equal time", "time",
-        "error at equal time"]
+HEAD = ["scene", "method", "spp", "time", "error, whole image", "error on surfaces", "time for the error of MIS",
+        "spp at equal time", "time", "error on surfaces at equal time"]
 
 
 def method_figures(by_samples, by_time):
-    return {method: {"relativeRmse": by_samples[method].relative_rmse, "seconds": by_samples[method].median_seconds,
+    return {method: {"relativeRmse": by_samples[method].relative_rmse, "surfaceRmse": by_samples[method].surface_rmse,
+                     "seconds": by_samples[method].median_seconds,
                      "timeForErrorOfMis": same_error_time(by_samples, method),
-                     "relativeRmseAtEqualTime": by_time[method].relative_rmse,
+                     "surfaceRmseAtEqualTime": by_time[method].surface_rmse,
                      "secondsAtEqualTime": by_time[method].median_seconds} for method in METHODS}
 
 
@@ -102,18 +103,19 @@ def rays_a_sample(measured):
 def soft_rows(at_one, at_rays):
     for count, one in at_one.items():
         equal = at_rays[count]
-        yield [count, number(rays_a_sample(one)), seconds(one.median_seconds), interval(one.relative_rmse, percent) + flag(one),
+        yield [count, number(rays_a_sample(one)), seconds(one.median_seconds), whole_error(one), surface_error(one),
                number(equal.runs[0].spp), number(equal.runs[0].report["rays"] / 1e6), seconds(equal.median_seconds),
-               interval(equal.relative_rmse, percent) + flag(equal)]
+               whole_error(equal), surface_error(equal)]
 
 
 def soft_verdict(at_one, at_rays):
     fewest, most = min(at_one), max(at_one)
-    errors = {count: at_rays[count].relative_rmse[1] for count in at_rays}
+    errors = {count: at_rays[count].surface_rmse[1] for count in at_rays}
     best = min(errors, key=errors.get)
-    return (f"At 1 sample a pixel {most} light samples instead of {fewest} bring the error from "
-            f"{percent(at_one[fewest].relative_rmse[1])} to {percent(at_one[most].relative_rmse[1])}; what is left is the edge "
-            f"of the light and of shapes, one camera ray a pixel, which no shadow ray smooths. With the same rays in all, "
+    return (f"At 1 sample a pixel {most} light samples instead of {fewest} bring the error on surfaces "
+            f"from {percent(at_one[fewest].surface_rmse[1])} to {percent(at_one[most].surface_rmse[1])}; what is left are the "
+            f"edges of shapes, one camera ray a pixel, which no shadow ray smooths. Over the whole image the edge of the light "
+            f"itself hides this. With the same rays in all, "
             f"{best} light sample{'s' if best > 1 else ''} a shading point {'are' if best > 1 else 'is'} best "
             f"({percent(errors[best])}).")
 
@@ -126,23 +128,23 @@ def soft_section(study):
     equal = {n: study.seeds(scene, soft_options(n), max(1, round(most_rays / rays_a_sample(at_one[n])))) for n in counts}
     at_rays = study.runner.interleaved(equal, reference)
     name = "{} light samples".format
-    head = ["light samples", "rays a sample", "time", "error at 1 spp", "spp", "million rays", "time", "error at equal rays"]
+    errors = ["error, whole image", "error on surfaces"]
+    head = ["light samples", "rays a sample", "time at 1 spp", *errors, "spp at equal rays", "million rays", "time", *errors]
     command = (f"isolux render {scene.name} -o image.exr --spp N --seed 0...{study.effort.seeds - 1} --max-depth 1 "
                f"--light-sampling light --light-samples {'|'.join(map(str, counts))}")
-    lines = [series("1 sample a pixel", [[n, one.relative_rmse[1], one.relative_rmse[0], one.relative_rmse[2]]
-                                         for n, one in at_one.items()]),
-             series("equal rays", [[n, one.relative_rmse[1], one.relative_rmse[0], one.relative_rmse[2]]
-                                   for n, one in at_rays.items()])]
+    lines = [series(words, [error_point(n, one.surface_rmse) for n, one in found.items()])
+             for words, found in (("1 sample a pixel", at_one), ("equal rays", at_rays))]
     blocks = [pictures_block(f"{scene.stem}, direct light, 1 sample a pixel",
                              study.pictures({name(n): one for n, one in at_one.items()})),
               pictures_block(f"{scene.stem}, direct light, as many rays in all",
                              study.pictures({name(n): one for n, one in at_rays.items()})),
-              chart_block("Error against light samples a shading point", "light samples", "relative RMSE", lines, [command]),
+              chart_block("Error on surfaces against light samples a shading point", "light samples", "relative RMSE", lines, [command]),
               table_block(f"Relative RMSE over {study.effort.seeds} seeds [95 %, t].", head, list(soft_rows(at_one, at_rays)),
                           [command]),
               text_block(soft_verdict(at_one, at_rays))]
-    figures = {"atOneSample": {n: one.relative_rmse for n, one in at_one.items()},
-               "atEqualRays": {n: one.relative_rmse for n, one in at_rays.items()}}
+    figures = {"atOneSample": {n: one.surface_rmse for n, one in at_one.items()},
+               "atEqualRays": {n: one.surface_rmse for n, one in at_rays.items()}}
     headline = (f"{max(counts)} light samples instead of {min(counts)}, at 1 spp",
-                f"error {percent(at_one[min(counts)].relative_rmse[1])} → {percent(at_one[max(counts)].relative_rmse[1])}")
+                f"error on surfaces {percent(at_one[min(counts)].surface_rmse[1])} → "
+                f"{percent(at_one[max(counts)].surface_rmse[1])}")
     return section("soft", "Soft shadows: the number of light samples", blocks, figures, [headline])

@@ -113,7 +113,9 @@ def contents(sections):
 EXPLANATION = (
     "Error is relative RMSE: the root of the mean squared difference from a long reference over the whole image in linear RGB, "
     "divided by the reference's mean. The reference's own variance is subtracted (E[(x − r)²] = MSE + Var(r)); ⚑ marks an error "
-    "of whose square it is more than 1 %, with that share. Intervals are at 95 %. Seconds are those of rendering on the device, "
+    "of whose square it is more than 1 %, with that share. On surfaces: the same over the pixels that see no light, because the "
+    "edge of a lamp, hit or missed by camera rays alone, else hides what differs between ways to light the rest; efficiencies "
+    "are of that error. Intervals are at 95 %. Seconds are those of rendering on the device, "
     "without loading, building and compiling. A picture shows the first seed.")
 
 

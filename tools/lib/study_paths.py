@@ -4,9 +4,10 @@ import math
 
 from study_exr import read_channels
 from study_plan import FULL_DEPTH, depth, largest_albedo
+from study_runs import root_mean_square
 from study_statistics import inefficiency_ratio, log_log_slope
-from study_text import (chart_block, flag, interval, number, percent, pictures_block, section, seconds, series, table_block,
-                        text_block, times)
+from study_text import (chart_block, error_point, interval, number, percent, pictures_block, section, seconds, series,
+                        surface_error, table_block, text_block, times, whole_error)
 
 LAST_BOUNCE = 5
 COLORS = ["R", "G", "B"]
@@ -35,19 +36,19 @@ def sum_check(alone, accumulated):
 
 
 def bounce_run(study, scene, options, spp):
-    """A render and its picture's error."""
+    """A render and how far it is from its reference."""
     run = study.runner.render(study.request(scene, options, spp))
-    error, = study.runner.errors([run], study.reference(scene, options))
-    return run, error
+    compared, = study.runner.compared([run], study.reference(scene, options))
+    return run, compared
 
 
 def bounce_pictures(study, mode):
     found = []
     for bounce in range(LAST_BOUNCE + 1):
         options = [*depth(bounce), "--bounces", mode, *NO_ROULETTE]
-        run, error = bounce_run(study, study.scenes.bunny, options, study.effort.bounce_spp)
+        run, compared = bounce_run(study, study.scenes.bunny, options, study.effort.bounce_spp)
         words = f"bounce {bounce} alone" if mode == "last" else f"up to bounce {bounce}"
-        found.append((run, study.picture(run, words, error)))
+        found.append((run, study.picture(run, words, compared)))
     return [run for run, _ in found], [item for _, item in found]
 
 
@@ -55,8 +56,8 @@ def part_pictures(study):
     items = []
     for part in ("all", "direct", "indirect"):
         options = [*depth(FULL_DEPTH), "--light", part]
-        run, error = bounce_run(study, study.scenes.spheres, options, 4 * study.effort.bounce_spp)
-        items.append(study.picture(run, {"all": "all light"}.get(part, f"{part} light alone"), error))
+        run, compared = bounce_run(study, study.scenes.spheres, options, 4 * study.effort.bounce_spp)
+        items.append(study.picture(run, {"all": "all light"}.get(part, f"{part} light alone"), compared))
     return items
 
 
@@ -121,9 +122,9 @@ def rays_per_sample(measured):
 def roulette_rows(found):
     for bounces, measured in found.items():
         for name, one in measured.items():
-            efficiency = "1" if name == "off" else interval(against_off(measured, name))
+            efficiency = "1" if name == "off" and sum(one.mses) else interval(against_off(measured, name))
             yield [bounces, name, number(rays_per_sample(one)), seconds(one.median_seconds),
-                   interval(one.relative_rmse, percent) + flag(one), efficiency]
+                   whole_error(one), surface_error(one), efficiency]
 
 
 def variance_words(scene):
@@ -149,7 +150,8 @@ def roulette_words(found):
         verdict = "more" if ratio > 1 else "less"
         parts.append(f"roulette by {name if name == 'throughput' else 'a constant'} takes "
                      f"{percent(measured[name].median_seconds / measured['off'].median_seconds)} of the time and has "
-                     f"{percent(measured[name].relative_rmse[1] / measured['off'].relative_rmse[1])} of the error of none: "
+                     f"{percent(measured[name].surface_rmse[1] / measured['off'].surface_rmse[1])} of the error on "
+                     f"surfaces of none: "
                      f"{times(ratio)} the efficiency, {verdict if sure else 'no difference beyond the interval'}")
     return f"At a depth of {deepest}, " + "; ".join(parts) + "."
 
@@ -165,7 +167,8 @@ def roulette_section(study):
     found = {bounces: roulette_measured(study, bounces) for bounces in study.effort.roulette_depths}
     command = f"isolux render {scene.name} -o image.exr --spp {spp} --seed 0...{study.effort.seeds - 1} --max-depth D "
     commands = [command + " ".join(options) for options in ROULETTES.values()]
-    head = ["maximum depth", "roulette", "rays a sample", "time", "error", "efficiency against off"]
+    head = ["maximum depth", "roulette", "rays a sample", "time", "error, whole image", "error on surfaces",
+            "efficiency against off"]
     table = table_block(f"{scene.stem}, {spp} samples a pixel. Relative RMSE over {study.effort.seeds} seeds [95 %, t]; "
                         "efficiency 1/(mean squared error × time) with a bootstrap interval over the seeds.",
                         head, list(roulette_rows(found)), commands)
@@ -176,7 +179,7 @@ def roulette_section(study):
     blocks = [pictures_block(f"{scene.stem}, {spp} samples a pixel", study.pictures(dict(roulette_pictures(found)))), table,
               text_block(roulette_words(found)), text_block(variance_words(scene)), chart]
     figures = [{"bounces": bounces, "methods": {name: {
-        "seconds": one.median_seconds, "relativeRmse": one.relative_rmse, "raysPerSample": rays_per_sample(one),
+        "seconds": one.median_seconds, "surfaceRmse": one.surface_rmse, "raysPerSample": rays_per_sample(one),
         "efficiencyAgainstOff": against_off(measured, name)} for name, one in measured.items()}}
                for bounces, measured in found.items()]
     deepest = found[max(found)]
@@ -196,31 +199,46 @@ def ladder_measured(study):
             for spp in study.effort.ladder}
 
 
-def slope_words(slope):
+def slope_words(where, slope):
     low, estimate, high = slope
     agrees = "holds" if low <= -0.5 <= high else "does not hold"
-    return (f"The slope of log error against log samples is {number(estimate)} [{number(low)}, {number(high)}] (least squares, "
+    return (f"Over {where} the slope of log error against log samples is {number(estimate)} [{number(low)}, {number(high)}] (least squares, "
             f"bootstrap over the seeds); the interval {agrees} the {number(-0.5)} of independent samples.")
+
+
+def ladder_rows(found):
+    for spp, one in found.items():
+        yield [spp, len(one.runs), seconds(one.median_seconds), whole_error(one), surface_error(one),
+               percent(one.reference_share)]
+
+
+def ladder_series(name, found, errors_of):
+    """What was measured with the line fitted to it, and the slope."""
+    errors = {spp: errors_of(one) for spp, one in found.items()}
+    slope, line = log_log_slope(list(found), [[error.mse for error in column] for column in errors.values()])
+    mean = errors[min(found)][0].reference_mean
+    points = [error_point(spp, root_mean_square(column)) for spp, column in errors.items()]
+    fitted = {**series(f"{name}: slope {number(slope[1])}", [[spp, value / mean] for spp, value in zip(found, line)]),
+              "marks": False}
+    return slope, [series(name, points, line=False), fitted]
 
 
 def samples_section(study):
     scene = study.scenes.bunny
     found = ladder_measured(study)
-    slope, line = log_log_slope(list(found), [one.mses for one in found.values()])
-    mean = next(iter(found.values())).errors[0].reference_mean
-    head = ["spp", "seeds", "time", "error", "share of the reference's noise"]
-    rows = [[spp, len(one.runs), seconds(one.median_seconds), interval(one.relative_rmse, percent) + flag(one),
-             percent(one.errors[0].reference_variance / (sum(one.mses) / len(one.mses)))] for spp, one in found.items()]
+    slope, whole = ladder_series("whole image", found, lambda one: one.errors)
+    surface_slope, surfaces = ladder_series("surfaces", found, lambda one: one.surface_errors)
+    head = ["spp", "seeds", "time", "error, whole image", "error on surfaces", "share of the reference's noise"]
     command = f"isolux render {scene.name} -o image.exr --spp {'|'.join(map(str, found))} --max-depth {FULL_DEPTH} --seed K"
-    lines = [series("measured", [[spp, one.relative_rmse[1], one.relative_rmse[0], one.relative_rmse[2]]
-                                 for spp, one in found.items()], line=False),
-             {**series(f"slope {number(slope[1])}", [[spp, value / mean] for spp, value in zip(found, line)]),
-              "marks": False}]
     blocks = [pictures_block(f"{scene.stem}, all bounces",
                              study.pictures({f"{spp} sample{'s' if spp > 1 else ''}": one for spp, one in found.items()})),
-              chart_block("Error against samples a pixel, both axes logarithmic", "samples a pixel", "relative RMSE", lines,
-                          [command]),
+              chart_block("Error against samples a pixel, both axes logarithmic", "samples a pixel", "relative RMSE",
+                          [*whole, *surfaces], [command]),
               table_block("Relative RMSE over the seeds [95 %, t]. The variance of the reference is subtracted; its share of "
-                          "the rest is in the last column.", head, rows, [command]), text_block(slope_words(slope))]
-    figures = {"slope": slope, "relativeRmse": {spp: one.relative_rmse for spp, one in found.items()}}
-    return section("samples", "Samples a pixel", blocks, figures, [("Slope of log error against log samples", interval(slope))])
+                          "the squared error of the whole image is in the last column.", head, list(ladder_rows(found)),
+                          [command]),
+              text_block(slope_words("the whole image", slope) + " " + slope_words("surfaces", surface_slope))]
+    figures = {"slope": slope, "surfaceSlope": surface_slope,
+               "relativeRmse": {spp: one.relative_rmse for spp, one in found.items()}}
+    headline = ("Slope of log error against log samples", f"{interval(slope)} over the whole image")
+    return section("samples", "Samples a pixel", blocks, figures, [headline])

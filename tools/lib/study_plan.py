@@ -123,8 +123,9 @@ class Study:
     def depth_reference(self, scene, bounces):
         return self.full_reference(scene) if bounces == FULL_DEPTH else self.reference(scene, depth(bounces))
 
-    def picture(self, run, label, error=None, image=None):
-        """An image of the page. Its error is a number, or nothing where the image shows none."""
+    def picture(self, run, label, compared=None, image=None):
+        """An image of the page, with its error unless the image shows no light."""
+        error = compared and compared.whole
         return {
             "label": label,
             "image": str((image or run.png).relative_to(self.runner.output)),
@@ -140,7 +141,7 @@ class Study:
 
     def pictures(self, measured):
         """The first seed of each, by name."""
-        return [self.picture(one.runs[0], name, one.errors[0]) for name, one in measured.items()]
+        return [self.picture(one.runs[0], name, one.compared[0]) for name, one in measured.items()]
 
 
 def depth(bounces):

@@ -13,9 +13,13 @@ import subprocess
 
 from gltf_facts import facts
 from study_statistics import mean_interval, signed_root
+from study_surfaces import surface_error
 
 # The reference's own variance should be less than this share of an error measured against it.
 REFERENCE_SHARE = 0.01
+
+# Of the image that tells which pixels see a light: one that is missed by so many rays holds next to nothing of it.
+EMISSION_SPP = 256
 
 
 class Failed(Exception):
@@ -59,11 +63,10 @@ class Run:
 
 @dataclasses.dataclass(frozen=True)
 class Error:
-    """Of an image against a reference: over all pixels, linear R, G and B."""
+    """Of an image against a reference: over all its pixels or some, linear R, G and B."""
     raw_mse: float
     reference_variance: float
     reference_mean: float
-    relative_bias: float
 
     @property
     def mse(self):
@@ -72,7 +75,7 @@ class Error:
 
     @property
     def relative_rmse(self):
-        return signed_root(self.mse) / self.reference_mean
+        return relative(self.mse, self.reference_mean)
 
     @property
     def flagged(self):
@@ -81,14 +84,32 @@ class Error:
 
 
 @dataclasses.dataclass(frozen=True)
+class Compared:
+    """An image held against its reference: the whole of it, the pixels that see no light (None without such), and the
+    relative difference of the means."""
+    whole: Error
+    surfaces: Error
+    relative_bias: float
+
+
+@dataclasses.dataclass(frozen=True)
 class Measured:
-    """Renders that differ by their seed alone, with their errors."""
+    """Renders that differ by their seed alone, with their comparisons."""
     runs: list
-    errors: list
+    compared: list
+
+    @property
+    def errors(self):
+        return [one.whole for one in self.compared]
+
+    @property
+    def surface_errors(self):
+        return [one.surfaces or one.whole for one in self.compared]
 
     @property
     def mses(self):
-        return [error.mse for error in self.errors]
+        """What efficiency is about: errors where methods differ."""
+        return [error.mse for error in self.surface_errors]
 
     @property
     def seconds(self):
@@ -104,15 +125,45 @@ class Measured:
 
     @property
     def relative_rmse(self):
-        """Root of the mean over seeds of the squared error, with its t interval."""
-        mean = self.errors[0].reference_mean
-        return [value if value is None else signed_root(value) / mean for value in mean_interval(self.mses)]
+        return root_mean_square(self.errors)
+
+    @property
+    def surface_rmse(self):
+        return root_mean_square(self.surface_errors)
+
+    @property
+    def reference_share(self):
+        """Of the variance of the reference, which the seeds share, in their mean squared error; None without an error."""
+        return share_of_reference(self.errors)
 
     @property
     def flagged(self):
-        """As for one image, but of the mean over the seeds: they share the reference."""
-        mean = statistics.fmean(self.mses)
-        return self.errors[0].reference_variance > REFERENCE_SHARE * mean and any(e.raw_mse > 0 for e in self.errors)
+        return is_flagged(self.errors)
+
+    @property
+    def surface_flagged(self):
+        return is_flagged(self.surface_errors)
+
+
+def relative(mse, mean):
+    """None where the reference is black: there is nothing to be relative to."""
+    return signed_root(mse) / mean if mean > 0 else None
+
+
+def root_mean_square(errors):
+    """Relative, of the mean over seeds of the squared error, with its t interval."""
+    mean = errors[0].reference_mean
+    return [value if value is None else relative(value, mean) for value in mean_interval([error.mse for error in errors])]
+
+
+def share_of_reference(errors):
+    mean = statistics.fmean(error.mse for error in errors)
+    return errors[0].reference_variance / mean if mean else None
+
+
+def is_flagged(errors):
+    mean = statistics.fmean(error.mse for error in errors)
+    return errors[0].reference_variance > REFERENCE_SHARE * mean and any(error.raw_mse > 0 for error in errors)
 
 
 def write_text(path, text):
@@ -190,36 +241,42 @@ class Runner:
             raise Failed(f"exit status {result.returncode} from '{shown}': {lines[0]}")
         return result.stdout
 
-    def comparison(self, image, reference):
+    def emission(self, request):
+        """What the camera sees of the lights alone, in an image of the same size."""
+        return self.render(Request(request.scene, ("--max-depth", "0"), EMISSION_SPP, request.size)).exr
+
+    def comparison(self, image, reference, emission):
+        """The program's report, and the errors on surfaces."""
         path = image.folder / f"compared-{reference.folder.name}.json"
         if not path.exists():
             command = [self.program, "compare", "--json", "--flip", "none", str(image.exr), str(reference.exr)]
-            write_text(path, self.call(command, "isolux compare image.exr reference.exr"))
+            found = json.loads(self.call(command, "isolux compare image.exr reference.exr"))
+            found["surfaces"] = surface_error(image.exr, reference.exr, emission)
+            write_text(path, json.dumps(found) + "\n")
         return json.loads(path.read_text())
 
-    def reference_variance(self, reference):
-        """The mean over pixels and channels of the variance of the reference's pixels: comparing it with itself counts it
-        twice."""
-        return self.comparison(reference, reference)["noiseMse"] / 2
-
-    def error(self, image, reference):
-        found = self.comparison(image, reference)
+    def compare(self, image, reference, emission):
+        found = self.comparison(image, reference, emission)
         if found["mse"] is None:
             raise Failed(f"an image of '{image.request.command()}' holds NaN or infinity")
-        mean = statistics.fmean(found["mean"]["reference"]["rgb"])
-        return Error(found["mse"], self.reference_variance(reference), mean, found["relativeBias"]["luminance"][1])
+        # Comparing the reference with itself counts the variance of its pixels twice.
+        variance = self.comparison(reference, reference, emission)["noiseMse"] / 2
+        whole = Error(found["mse"], variance, statistics.fmean(found["mean"]["reference"]["rgb"]))
+        part = found["surfaces"] and Error(*(found["surfaces"][name] for name in ("mse", "referenceVariance", "referenceMean")))
+        return Compared(whole, part, found["relativeBias"]["luminance"][1])
 
-    def errors(self, images, reference):
-        self.reference_variance(reference)  # once, before all of them ask for it
-        return list(self.pool.map(lambda image: self.error(image, reference), images))
+    def compared(self, images, reference):
+        emission = self.emission(reference.request)
+        self.comparison(reference, reference, emission)  # once, before all of them ask for it
+        return list(self.pool.map(lambda image: self.compare(image, reference, emission), images))
 
     def measured(self, requests, reference):
         runs = [self.render(request) for request in requests]
-        return Measured(runs, self.errors(runs, reference))
+        return Measured(runs, self.compared(runs, reference))
 
     def interleaved(self, groups, reference):
         """Measured by name for requests by name, as many of each: rendered in turns, so that what else the machine does
         meets all of them alike."""
         rounds = zip(*groups.values())
         runs = [[self.render(request) for request in one_round] for one_round in rounds]
-        return {name: Measured(list(column), self.errors(column, reference)) for name, column in zip(groups, zip(*runs))}
+        return {name: Measured(list(column), self.compared(column, reference)) for name, column in zip(groups, zip(*runs))}

@@ -55,12 +55,14 @@ def bootstrap(estimator, samples):
 
 def ratio_of_means(samples):
     above, below = map(statistics.fmean, samples)
-    return above / below
+    return above / below if below > 0 else math.inf
 
 
 def inefficiency_ratio(errors, seconds, other_errors, other_seconds):
     """(MSE T) / (MSE T) of two methods: how many times longer the first needs for the second's error. Errors are mean
     squared errors by seed; the noise of timing is left out by taking the median."""
+    if statistics.fmean(other_errors) <= 0:
+        return [None, None, None]  # without an error there is no efficiency
     factor = statistics.median(seconds) / statistics.median(other_seconds)
     return [value if value is None else value * factor for value in bootstrap(ratio_of_means, [errors, other_errors])]
 

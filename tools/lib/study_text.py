@@ -39,9 +39,14 @@ def times(value):
     return "×" + number(value)
 
 
-def flag(measured):
-    """Marks an error against a reference that is not clean enough for it."""
-    return " ⚑" if measured.flagged else ""
+def whole_error(measured):
+    """Over the whole image; marked where the reference is not clean enough for it."""
+    return interval(measured.relative_rmse, percent) + (" ⚑" if measured.flagged else "")
+
+
+def surface_error(measured):
+    """Over the pixels that see no light."""
+    return interval(measured.surface_rmse, percent) + (" ⚑" if measured.surface_flagged else "")
 
 
 def pictures_block(caption, items):
@@ -55,6 +60,11 @@ def table_block(caption, head, rows, commands=()):
 def series(name, points, line=True):
     """`points`: (x, y) or (x, y, low, high)."""
     return {"name": name, "points": points, "line": line}
+
+
+def error_point(x, error):
+    """A point of a series from [low, estimate, high]."""
+    return [x, error[1], error[0], error[2]]
 
 
 def chart_block(caption, x, y, lines, commands=()):
