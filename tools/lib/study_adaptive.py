@@ -1,0 +1,159 @@
+"""Adaptive sampling against uniform sampling, and the report's gallery."""
+
+import statistics
+
+from study_exr import luminance, read_channels
+from study_plan import FULL_DEPTH, depth
+from study_statistics import inefficiency_ratio, mean_interval, t_quantile
+from study_text import (interval, number, percent, pictures_block, section, seconds, surface_error, table_block, text_block,
+                        times, whole_error)
+
+CHANNELS = ["R", "G", "B", "samples.Y"]
+FULL = depth(FULL_DEPTH)
+
+# Of a render whose samples depend on each other (host/scene/render_settings.h).
+REPLICATES = 16
+
+# Of an interval of 1.96 standard errors.
+CONFIDENCE = 0.95
+
+
+def coverage(run, reference, tolerance):
+    """Of the pixels that are lit in the reference: the share within tolerance of it, the same of those that stopped before
+    the maximum, and the share that did not."""
+    _, _, image = read_channels(run.exr, CHANNELS)
+    truth = luminance(read_channels(reference.exr, CHANNELS)[2])
+    lit = [(abs(x - r) <= tolerance * r, count < run.request.spp)
+           for x, r, count in zip(luminance(image), truth, image["samples.Y"]) if r > 0]
+    stopped = [within for within, early in lit if early]
+    return {"within": statistics.fmean(within for within, _ in lit),
+            "withinOfStopped": statistics.fmean(stopped) if stopped else None,
+            "atMaximum": 1 - len(stopped) / len(lit)}
+
+
+def averaged(values):
+    known = [value for value in values if value is not None]
+    return statistics.fmean(known) if known else None
+
+
+def mean_coverage(measured, reference, tolerance):
+    found = [coverage(run, reference, tolerance) for run in measured.runs]
+    return {name: averaged([one[name] for one in found]) for name in found[0]}
+
+
+def mean_bias(measured, reference):
+    """Of the image's mean luminance, relative: t interval over seeds, with the reference's own error, whose interval comes
+    from its replicates."""
+    low, mean, high = reference.report["meanLuminance"]
+    own = (high - low) / (2 * t_quantile(REPLICATES - 1) * mean)
+    return mean_interval([one.relative_bias for one in measured.compared], own)
+
+
+def adaptive_requests(study, scene, tolerance):
+    options = [*FULL, "--adaptive", str(tolerance)]
+    return [study.request(scene, options, study.effort.adaptive_max, seed=seed, sample_map=True)
+            for seed in range(study.effort.adaptive_seeds)]
+
+
+def uniform_cost(study, scene):
+    """Seconds for a sample in every pixel."""
+    run = study.runner.render(study.request(scene, FULL, 64, seed=99))
+    return run.seconds / run.spp
+
+
+def measure(study, scene, tolerance):
+    """Adaptive, and uniform with the samples that fit the same time."""
+    reference = study.full_reference(scene)
+    adaptive = study.runner.measured(adaptive_requests(study, scene, tolerance), reference)
+    spp = max(2, round(adaptive.median_seconds / uniform_cost(study, scene)))
+    uniform = study.runner.measured(study.seeds(scene, FULL, spp, study.effort.adaptive_seeds), reference)
+    return {"tolerance": tolerance, "adaptive": adaptive, "uniform": uniform,
+            "adaptiveCoverage": mean_coverage(adaptive, reference, tolerance),
+            "uniformCoverage": mean_coverage(uniform, reference, tolerance),
+            "adaptiveBias": mean_bias(adaptive, reference), "uniformBias": mean_bias(uniform, reference)}
+
+
+def method_row(scene, entry, method):
+    measured, found = entry[method], entry[method + "Coverage"]
+    return [scene.stem, percent(entry["tolerance"]), method, number(statistics.fmean(run.spp for run in measured.runs)),
+            seconds(measured.median_seconds), percent(found["atMaximum"]) if method == "adaptive" else "–",
+            percent(found["within"]), percent(found["withinOfStopped"]) if method == "adaptive" else "–",
+            whole_error(measured), surface_error(measured), interval(entry[method + "Bias"], percent)]
+
+
+HEAD = ["scene", "tolerance", "method", "mean spp", "time", "pixels at the maximum", "within tolerance",
+        "of those that stopped", "error, whole image", "error on surfaces", "bias of the mean"]
+
+
+def against_uniform(entry):
+    """How many times longer adaptive takes for the error of uniform sampling: below 1 it gains."""
+    one, other = entry["adaptive"], entry["uniform"]
+    return inefficiency_ratio(one.mses, one.seconds, other.mses, other.seconds)
+
+
+def scene_pictures(study, entry):
+    adaptive, uniform = entry["adaptive"], entry["uniform"]
+    run = adaptive.runs[0]
+    return [study.picture(run, "adaptive", adaptive.compared[0]),
+            study.picture(uniform.runs[0], "uniform, equal time", uniform.compared[0]),
+            study.picture(run, "samples a pixel", image=run.sample_map)]
+
+
+def entry_figures(scene, entry, most):
+    return {"scene": scene.stem, "tolerance": entry["tolerance"], "maximumSpp": most,
+            "meanSpp": statistics.fmean(run.spp for run in entry["adaptive"].runs),
+            "coverage": entry["adaptiveCoverage"], "uniformCoverage": entry["uniformCoverage"],
+            "relativeRmse": entry["adaptive"].relative_rmse, "uniformRelativeRmse": entry["uniform"].relative_rmse,
+            "bias": entry["adaptiveBias"], "uniformBias": entry["uniformBias"], "timeForErrorOfUniform": against_uniform(entry)}
+
+
+def adaptive_words(figures):
+    parts = []
+    for one in figures:
+        low, bias, high = one["bias"]
+        share = one["coverage"]["withinOfStopped"]
+        sure = low is not None and (low > 0 or high < 0)
+        stopped = "no pixel stopped" if share is None else f"of the pixels that stopped {percent(share)} are within it"
+        parts.append(f"{one['scene']} at {percent(one['tolerance'])}: {stopped}, the mean is {percent(bias)} off"
+                     f"{'' if sure else ', which the interval does not tell from none'}; time for uniform's error on surfaces "
+                     f"{times(one['timeForErrorOfUniform'][1])}.")
+    return " ".join(parts)
+
+
+def adaptive_section(study):
+    most = study.effort.adaptive_max
+    blocks, rows, figures = [], [], []
+    for scene in (study.scenes.spheres, study.scenes.dragon):
+        for tolerance in study.effort.tolerances:
+            entry = measure(study, scene, tolerance)
+            rows += [method_row(scene, entry, method) for method in ("adaptive", "uniform")]
+            figures.append(entry_figures(scene, entry, most))
+            caption = f"{scene.stem}, tolerance {percent(tolerance)}, at most {most} samples a pixel"
+            blocks.append(pictures_block(caption, scene_pictures(study, entry)))
+    command = f"isolux render SCENE -o image.exr --sample-map samples.png --spp {most} --max-depth {FULL_DEPTH} --adaptive T"
+    table = table_block(
+        f"A pixel stops when 1.96 standard errors of its luminance are at most the tolerance times its mean, and those of its "
+        f"neighbours of theirs, tested every 32 samples from the 64th on; all stop at {most}. Within tolerance: the share of the lit pixels whose luminance x has "
+        f"|x − r| ≤ tolerance · r against the reference r; {percent(CONFIDENCE)} is what the rule promises of those that "
+        f"stopped, less what the reference's own noise takes. Relative RMSE and the bias of the mean: over "
+        f"{study.effort.adaptive_seeds} seeds [95 %, t].", HEAD, rows,
+        [command, f"isolux render SCENE -o image.exr --spp N --max-depth {FULL_DEPTH} --seed 0...{study.effort.adaptive_seeds - 1}"])
+    rule = text_block("The rule makes the relative error of pixels alike; RMSE asks for the absolute error. So adaptive sampling "
+                      "spends its samples on dark pixels, and need not win by RMSE where it keeps its promise. A rule that "
+                      "looks at the samples it is about to average stops too early on pixels whose light is rare (Kirk and "
+                      "Arvo 1991): the mean comes out too dark.")
+    first = figures[0]
+    headline = (f"Adaptive at {percent(first['tolerance'])}, {first['scene']}: pixels within it, of those that stopped",
+                f"{percent(first['coverage']['withinOfStopped'])}; bias of the mean {interval(first['bias'], percent)}")
+    return section("adaptive", "Adaptive sampling", [table, text_block(adaptive_words(figures)), rule, *blocks],
+                   {"runs": figures}, [headline])
+
+
+def gallery_section(study):
+    items = []
+    for scene in study.scenes.gallery:
+        run = study.runner.render(study.request(scene, FULL, study.effort.gallery_spp))
+        compared, = study.runner.compared([run], study.reference(scene, FULL))
+        items.append(study.picture(run, scene.stem, compared))
+    block = pictures_block("The scenes of the report's part on global illumination", items)
+    return section("gallery", "Global illumination: bunny, dragon, blob, bench", [block], {"scenes": len(items)}, [])
