@@ -21,6 +21,7 @@ constexpr std::uint32_t kLargestLeaf = 8;
 
 template <typename Enum> CLI::Option* addChoice(CLI::App& command, const std::string& name, Enum& target) {
     std::vector<std::string> words;
+    words.reserve(kChoices<Enum>.size());
     for (const NamedChoice<Enum>& choice : kChoices<Enum>) words.emplace_back(choice.name);
     const auto choose = [&target](const std::string& word) {
         for (const NamedChoice<Enum>& choice : kChoices<Enum>)
