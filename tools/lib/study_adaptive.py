@@ -51,22 +51,23 @@ def mean_bias(measured, reference):
 
 def adaptive_requests(study, scene, tolerance):
     options = [*FULL, "--adaptive", str(tolerance)]
-    return [study.request(scene, options, study.effort.adaptive_max, seed=seed, sample_map=True)
-            for seed in range(study.effort.adaptive_seeds)]
+    return study.seeds(scene, options, study.effort.adaptive_max, study.effort.adaptive_seeds,
+                       size=study.effort.adaptive_size, sample_map=True)
 
 
 def uniform_cost(study, scene):
     """Seconds for a sample in every pixel."""
-    run = study.runner.render(study.request(scene, FULL, 64, seed=99))
+    run = study.runner.render(study.request(scene, FULL, 64, seed=99, size=study.effort.adaptive_size))
     return run.seconds / run.spp
 
 
 def measure(study, scene, tolerance):
     """Adaptive, and uniform with the samples that fit the same time."""
-    reference = study.full_reference(scene)
+    size = study.effort.adaptive_size
+    reference = study.depth_reference(scene, FULL_DEPTH, size=size)
     adaptive = study.runner.measured(adaptive_requests(study, scene, tolerance), reference)
     spp = max(2, round(adaptive.median_seconds / uniform_cost(study, scene)))
-    uniform = study.runner.measured(study.seeds(scene, FULL, spp, study.effort.adaptive_seeds), reference)
+    uniform = study.runner.measured(study.seeds(scene, FULL, spp, study.effort.adaptive_seeds, size=size), reference)
     return {"tolerance": tolerance, "adaptive": adaptive, "uniform": uniform,
             "adaptiveCoverage": mean_coverage(adaptive, reference, tolerance),
             "uniformCoverage": mean_coverage(uniform, reference, tolerance),
@@ -153,7 +154,7 @@ def gallery_section(study):
     items = []
     for scene in study.scenes.gallery:
         run = study.runner.render(study.request(scene, FULL, study.effort.gallery_spp))
-        compared, = study.runner.compared([run], study.reference(scene, FULL))
+        compared, = study.runner.compared([run], study.reference(scene, FULL, 2 * study.effort.reference_spp))
         items.append(study.picture(run, scene.stem, compared))
     block = pictures_block("The scenes of the report's part on global illumination", items)
     return section("gallery", "Global illumination: bunny, dragon, blob, bench", [block], {"scenes": len(items)}, [])

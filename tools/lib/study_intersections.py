@@ -21,7 +21,7 @@ def normals_pictures(study):
     items = []
     for scene in study.scenes.normals:
         run = study.runner.render(study.request(scene, NORMALS, study.effort.normals_spp))
-        error, = study.runner.compared([run], study.reference(scene, NORMALS, 64 * study.effort.normals_spp))
+        error, = study.runner.compared([run], study.reference(scene, NORMALS, 16 * study.effort.normals_spp))
         items.append(study.picture(run, scene.stem, error))
     return pictures_block("Shading normals as colours, (n + 1)/2", items)
 

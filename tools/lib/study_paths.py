@@ -35,18 +35,19 @@ def sum_check(alone, accumulated):
             "beyond": sum(difference > bound for difference in differences), "values": len(differences)}
 
 
-def bounce_run(study, scene, options, spp):
+def bounce_run(study, scene, options, spp, reference):
     """A render and how far it is from its reference."""
     run = study.runner.render(study.request(scene, options, spp))
-    compared, = study.runner.compared([run], study.reference(scene, options))
+    compared, = study.runner.compared([run], reference)
     return run, compared
 
 
 def bounce_pictures(study, mode):
-    found = []
+    scene, found = study.scenes.bunny, []
     for bounce in range(LAST_BOUNCE + 1):
         options = [*depth(bounce), "--bounces", mode, *NO_ROULETTE]
-        run, compared = bounce_run(study, study.scenes.bunny, options, study.effort.bounce_spp)
+        reference = study.reference(scene, options) if mode == "last" else study.depth_reference(scene, bounce)
+        run, compared = bounce_run(study, scene, options, study.effort.bounce_spp, reference)
         words = f"bounce {bounce} alone" if mode == "last" else f"up to bounce {bounce}"
         found.append((run, study.picture(run, words, compared)))
     return [run for run, _ in found], [item for _, item in found]
@@ -56,7 +57,8 @@ def part_pictures(study):
     items = []
     for part in ("all", "direct", "indirect"):
         options = [*depth(FULL_DEPTH), "--light", part]
-        run, compared = bounce_run(study, study.scenes.spheres, options, 4 * study.effort.bounce_spp)
+        reference = study.reference(study.scenes.spheres, options, 2 * study.effort.reference_spp)
+        run, compared = bounce_run(study, study.scenes.spheres, options, study.effort.bounce_spp, reference)
         items.append(study.picture(run, {"all": "all light"}.get(part, f"{part} light alone"), compared))
     return items
 
@@ -194,7 +196,7 @@ def ladder_seeds(study, spp):
 
 def ladder_measured(study):
     scene, options = study.scenes.bunny, depth(FULL_DEPTH)
-    reference = study.full_reference(scene)
+    reference = study.depth_reference(scene, FULL_DEPTH)
     return {spp: study.runner.measured(study.seeds(scene, options, spp, ladder_seeds(study, spp)), reference)
             for spp in study.effort.ladder}
 
