@@ -26,12 +26,15 @@ def commands(lines):
 
 
 def error_text(item):
+    """Of the whole image, with the mark of a reference that is not clean enough; on surfaces if that is something else."""
     if item["relativeRmse"] is None:
         return ""
     error = f"error {percent(item['relativeRmse'])}"
     if item["flagged"]:
         share = item["referenceShare"]
         error += f" ⚑{NO_BREAK}{percent(share, 2)}" if share and share > 0 else " ⚑"
+    if item["surfaceRmse"] not in (None, item["relativeRmse"]):
+        error += f", on surfaces {percent(item['surfaceRmse'])}"
     return error
 
 

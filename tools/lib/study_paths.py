@@ -82,7 +82,7 @@ def bounces_section(study):
     total = mean_of(accumulated_runs[-1])
     rows = [[bounce, number(mean_of(run)), percent(mean_of(run) / total), percent(mean_of(whole) / total)]
             for bounce, (run, whole) in enumerate(zip(alone_runs, accumulated_runs))]
-    table = table_block(f"{scene.stem}: mean luminance of each bounce, and its share of the first {LAST_BOUNCE}",
+    table = table_block(f"{scene.stem}: mean luminance of each bounce, and its share of bounces 0 to {LAST_BOUNCE}",
                         ["bounce", "mean luminance", "share", "share so far"], rows,
                         [f"isolux render {scene.name} -o image.exr --max-depth B --bounces last|accumulate --roulette off"])
     blocks = [pictures_block(f"{scene.stem}, bounces accumulated", accumulated),

@@ -133,6 +133,7 @@ class Study:
             "spp": run.spp,
             "seconds": run.seconds,
             "relativeRmse": error and error.relative_rmse,
+            "surfaceRmse": compared and compared.surfaces and compared.surfaces.relative_rmse,
             "flagged": bool(error) and error.flagged,
             "referenceShare": error and error.mse and error.reference_variance / error.mse,
             "command": run.request.command(),
