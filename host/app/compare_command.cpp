@@ -94,14 +94,10 @@ ExitCode run(const CompareCommand& command) {
 void addLimits(CLI::App& sub, CompareCommand& command) {
     sub.add_option("--max-relative-bias", command.limits.maxRelativeBias,
                    "Largest relative difference of the means, as a fraction")
-        ->check(finiteNumber())
-        ->check(CLI::NonNegativeNumber);
+        ->check(nonNegativeNumber());
     sub.add_option("--max-rel-mse", command.limits.maxRelMse, "Largest relative mean squared error")
-        ->check(finiteNumber())
-        ->check(CLI::NonNegativeNumber);
-    sub.add_option("--max-flip", command.limits.maxFlip, "Largest mean FLIP, from 0 to 1")
-        ->check(finiteNumber())
-        ->check(CLI::NonNegativeNumber);
+        ->check(nonNegativeNumber());
+    sub.add_option("--max-flip", command.limits.maxFlip, "Largest mean FLIP, from 0 to 1")->check(nonNegativeNumber());
     sub.add_flag("--check-blocks", command.checkBlocks,
                  "Fail if a block of 16 x 16 pixels or the mean differs by more than noise explains (1 % over all)");
 }

@@ -16,6 +16,9 @@ int run(int argumentCount, char** arguments) {
     CLI::App app("Isolux: a Vulkan compute path tracer that measures itself.");
     app.set_version_flag("--version", std::string("isolux ") + ISOLUX_VERSION);
     app.require_subcommand(1);
+    app.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return fmt::format("isolux: error: {} (--help lists what there is)\n", error.what());
+    });
     app.footer("Examples:\n"
                "  isolux render scene.glb -o image.exr --spp 256\n"
                "  isolux scene scene.glb\n"

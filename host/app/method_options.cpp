@@ -4,7 +4,6 @@
 #include "app/validators.h"
 #include "core/error.h"
 #include "core/log.h"
-#include "core/sample_sequence.h"
 #include "scene/pixel_filter.h"
 
 #include <CLI/CLI.hpp>
@@ -22,6 +21,7 @@ constexpr std::uint32_t kLargestLeaf = 8;
 
 template <typename Enum> CLI::Option* addChoice(CLI::App& command, const std::string& name, Enum& target) {
     std::vector<std::string> words;
+    words.reserve(kChoices<Enum>.size());
     for (const NamedChoice<Enum>& choice : kChoices<Enum>) words.emplace_back(choice.name);
     const auto choose = [&target](const std::string& word) {
         for (const NamedChoice<Enum>& choice : kChoices<Enum>)
@@ -33,7 +33,7 @@ template <typename Enum> CLI::Option* addChoice(CLI::App& command, const std::st
 }
 
 CLI::Option* addLength(CLI::App& command, const std::string& name, std::optional<double>& target) {
-    return command.add_option(name, target)->check(finiteNumber())->check(CLI::PositiveNumber);
+    return command.add_option(name, target)->check(positiveNumber());
 }
 
 void addLightTransport(CLI::App& command, MethodOptions& options) {
@@ -56,7 +56,7 @@ void addLightTransport(CLI::App& command, MethodOptions& options) {
     command.add_option("--light-samples", chosen.lightSamples)
         ->group(kGroup)
         ->description("Shadow rays a hit: in all, or to each area light with --light-choice all")
-        ->check(CLI::PositiveNumber)
+        ->check(positiveNumber())
         ->capture_default_str();
     addChoice(command, "--light-choice", chosen.lightChoice)
         ->group(kGroup)
@@ -94,15 +94,16 @@ void addSampling(CLI::App& command, MethodOptions& options) {
     addLength(command, "--filter-radius", options.filterRadius)
         ->group(kGroup)
         ->description("In pixels, of a filter other than box (default: triangle 1, gaussian and blackman-harris 1.5)")
-        ->check(CLI::Range(0.0, kLargestFilterRadius));
+        ->check(numberThat([](double radius) { return radius <= kLargestFilterRadius; },
+                           fmt::format("at most {}", kLargestFilterRadius),
+                           fmt::format("<= {}", kLargestFilterRadius)));
 }
 
 void addCamera(CLI::App& command, MethodOptions& options) {
     constexpr const char* kGroup = "Camera";
     command.add_option("--aperture", options.aperture)
         ->group(kGroup)
-        ->check(finiteNumber())
-        ->check(CLI::NonNegativeNumber)
+        ->check(nonNegativeNumber())
         ->description("Diameter of a thin lens in the scene's unit; needs --focus (default: 0, a pinhole)");
     addLength(command, "--focus", options.focus)
         ->group(kGroup)
@@ -174,7 +175,7 @@ void checkBlueNoise(const RenderSettings& settings) {
     const auto pixelBits =
         2 * static_cast<std::uint32_t>(std::bit_width(std::max(settings.width, settings.height) - 1));
     const std::uint64_t samples = std::uint64_t{settings.firstSample} + settings.sampleCount;
-    if (pixelBits + cellBitsFor(samples) <= 32) return;
+    if (pixelBits + cellBitsOf(settings) <= 32) return;
     throwBadInput(
         "--spp", fmt::format("--pixel-sampler sobol-blue-noise has {} samples for each of {} x {} pixels, and "
                              "samples up to {} are asked for: give a lower --spp, or a smaller image",

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kAdaptiveSamples = 4096;
 
 CLI::Option* addPositive(CLI::App& command, const std::string& name, std::optional<double>& target) {
-    return command.add_option(name, target)->group("Stopping")->check(finiteNumber())->check(CLI::PositiveNumber);
+    return command.add_option(name, target)->group("Stopping")->check(positiveNumber());
 }
 
 CLI::Option* addCount(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target,
@@ -71,8 +71,8 @@ void warnOfStopping(const StoppingRule& rule, const RenderSettings& settings) {
                      rule.adaptive->minSamples, settings.sampleCount);
     const bool early = rule.seconds || rule.adaptive || rule.relativeError;
     if (early && settings.sampler == PixelSampler::stratified)
-        spdlog::warn("--pixel-sampler stratified: strata are laid out for {} samples, and those of a render that stops "
-                     "sooner lie in some of them alone; sobol is even at any number",
+        spdlog::warn("--pixel-sampler stratified: strata are laid out for {} samples, too fine for a render that stops "
+                     "sooner; sobol is even at any number",
                      settings.sampleCount);
 }
 

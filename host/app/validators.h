@@ -8,14 +8,29 @@
 
 namespace isolux {
 
-/// A number that is neither NaN nor infinite: comparisons with bounds, CLI11's own included, let NaN pass.
-[[nodiscard]] inline CLI::Validator finiteNumber() {
-    return {[](std::string& text) -> std::string {
+/// A finite number of which `accepts` is true, `what` in words: comparisons with bounds, CLI11's own included, let NaN
+/// pass, and its messages print the largest number there is.
+template <typename Accepts>
+[[nodiscard]] CLI::Validator numberThat(const Accepts& accepts, const std::string& what, const std::string& name) {
+    return {[accepts, what](std::string& text) -> std::string {
                 double value = 0.0;
                 const bool finite = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-                return finite ? "" : "'" + text + "' is not a finite number";
+                if (!finite) return "'" + text + "' is not a finite number";
+                return accepts(value) ? "" : "'" + text + "' is not " + what;
             },
-            "FINITE"};
+            name};
+}
+
+[[nodiscard]] inline CLI::Validator finiteNumber() {
+    return numberThat([](double) { return true; }, "", "FINITE");
+}
+
+[[nodiscard]] inline CLI::Validator positiveNumber() {
+    return numberThat([](double value) { return value > 0.0; }, "above 0", "POSITIVE");
+}
+
+[[nodiscard]] inline CLI::Validator nonNegativeNumber() {
+    return numberThat([](double value) { return value >= 0.0; }, "0 or more", "NONNEGATIVE");
 }
 
 } // namespace isolux

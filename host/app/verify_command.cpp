@@ -2,17 +2,21 @@
 #include "app/backends.h"
 #include "app/commands.h"
 #include "app/divergence.h"
+#include "app/method_names.h"
 #include "app/progress_bar.h"
 #include "app/scene_options.h"
 #include "app/validators.h"
 #include "core/log.h"
+#include "core/stopwatch.h"
 #include "reference/reference.h"
 #include "report/comparison.h"
+#include "report/format.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 
 namespace isolux {
@@ -38,8 +42,19 @@ struct Outcome {
     std::string device;
     std::size_t validationMessages = 0;
     Diagnostics diagnostics;
+    std::vector<MethodChoice> methods;
+    std::string tests; ///< a ray, if they were counted
     bool passed = false;
 };
+
+double perRay(std::uint64_t tests, const Film& film) {
+    return static_cast<double>(tests) / static_cast<double>(std::max(film.rays, std::uint64_t{1}));
+}
+
+std::string testsText(const Film& film) {
+    return fmt::format("{} boxes and {} primitives", formatNumber(perRay(film.boxTests, film)),
+                       formatNumber(perRay(film.primitiveTests, film)));
+}
 
 bool passes(const Outcome& outcome, const VerifyCommand& command) {
     const PairedDifferences& d = outcome.differences;
@@ -50,56 +65,72 @@ bool passes(const Outcome& outcome, const VerifyCommand& command) {
            outcome.validationMessages == 0;
 }
 
-std::optional<Outcome> compareBackends(const VerifyCommand& command) {
-    const SceneRun run = openScene(command.scene, command.methods, kDefaultWidth);
-    const ProgressDisplay display = progressDisplay(command.scene);
-    const Device device(deviceOptions(command.scene));
-    RenderOptions options;
-    options.signatures = PathSignatures::on;
-    options.dispatchSeconds = 1e-3 * command.scene.dispatchMilliseconds;
-    PathRenderer renderer(device, run.scene, run.settings, options);
-    Outcome outcome;
-    outcome.device = fmt::format("{} ({})", device.description().name, device.description().driverVersion);
-    Film film(run.settings.width, run.settings.height);
-    {
-        ProgressBar bar("device   ", display);
-        renderer.render(film, bar.callback());
-        outcome.deviceSeconds = bar.elapsedSeconds();
-    }
-    if (film.minSampleCount() < run.settings.sampleCount) return std::nullopt;
-    Film reference;
-    {
-        ProgressBar bar("reference", display);
-        reference =
-            renderReference(run.scene, run.settings, {Precision::doublePrecision, PathSignatures::on}, bar.callback());
-        outcome.referenceSeconds = bar.elapsedSeconds();
-    }
-    if (reference.minSampleCount() < run.settings.sampleCount) return std::nullopt;
-    outcome.differences = pairedDifferences(film, reference, {command.tolerance, nullptr});
-    if (outcome.differences.unexplained > 0) {
-        ProgressBar bar("single precision", display);
-        const Film single = renderReference(run.scene, run.settings, {Precision::singlePrecision}, bar.callback());
-        if (single.minSampleCount() < run.settings.sampleCount) return std::nullopt;
-        outcome.differences = pairedDifferences(film, reference, {command.tolerance, &single});
-    }
-    outcome.diagnostics = film.diagnostics;
-    outcome.diagnostics.merge(reference.diagnostics);
+Film referenceFilm(const SceneRun& run, const VerifyCommand& command, Precision precision) {
+    ReferenceOptions options;
+    options.precision = precision;
+    const bool exact = precision == Precision::doublePrecision;
+    options.signatures = exact ? PathSignatures::on : PathSignatures::off;
+    options.counts = exact ? command.methods.counts() : TraversalCounts::off;
+    ProgressBar bar(exact ? "reference" : "single precision", progressDisplay(command.scene));
+    return renderReference(run.scene, run.settings, options, bar.callback());
+}
+
+void explainBranches(Outcome& outcome, PathRenderer& renderer, const SceneRun& run) {
     for (const PairedPixel& pixel : outcome.differences.worst) {
         if (outcome.divergences.size() == kExplainedPixels || pixel.signature == Signature::same) continue;
         if (const auto divergence = findDivergence(renderer, run.scene, run.settings, pixel))
             outcome.divergences.emplace_back(pixel, *divergence);
     }
+}
+
+/// Nothing if it was interrupted.
+std::optional<Outcome> compareBackends(const VerifyCommand& command) {
+    const SceneRun run = openScene(command.scene, command.methods, kDefaultWidth);
+    const Device device(deviceOptions(command.scene));
+    RenderOptions options;
+    options.signatures = PathSignatures::on;
+    options.counts = command.methods.counts();
+    options.dispatchSeconds = 1e-3 * command.scene.dispatchMilliseconds;
+    PathRenderer renderer(device, run.scene, run.settings, options);
+    Outcome outcome;
+    outcome.methods = methodsOf(run.settings);
+    outcome.device = fmt::format("{} ({})", device.description().name, device.description().driverVersion);
+    Film film(run.settings.width, run.settings.height);
+    {
+        ProgressBar bar("device   ", progressDisplay(command.scene));
+        renderer.render(film, bar.callback());
+        outcome.deviceSeconds = bar.elapsedSeconds();
+    }
+    if (film.minSampleCount() < run.settings.sampleCount) return std::nullopt;
+    const Stopwatch watch;
+    const Film reference = referenceFilm(run, command, Precision::doublePrecision);
+    outcome.referenceSeconds = watch.seconds();
+    if (reference.minSampleCount() < run.settings.sampleCount) return std::nullopt;
+    if (command.methods.countTests)
+        outcome.tests = fmt::format("device {}, reference {}", testsText(film), testsText(reference));
+    outcome.differences = pairedDifferences(film, reference, {command.tolerance, nullptr});
+    if (outcome.differences.unexplained > 0) {
+        const Film single = referenceFilm(run, command, Precision::singlePrecision);
+        if (single.minSampleCount() < run.settings.sampleCount) return std::nullopt;
+        outcome.differences = pairedDifferences(film, reference, {command.tolerance, &single});
+    }
+    outcome.diagnostics = film.diagnostics;
+    outcome.diagnostics.merge(reference.diagnostics);
+    explainBranches(outcome, renderer, run);
     outcome.validationMessages = device.validationMessages().size();
     outcome.passed = passes(outcome, command);
     return outcome;
 }
 
 void printText(const Outcome& outcome) {
-    fmt::print("device        {}\n{}", outcome.device, toText(outcome.differences));
+    fmt::print("device        {}\n", outcome.device);
+    if (!outcome.methods.empty()) fmt::print("methods       {}\n", formatMethods(outcome.methods));
+    fmt::print("{}", toText(outcome.differences));
     for (const auto& [pixel, divergence] : outcome.divergences)
         fmt::print("pixel ({}, {}) parts at sample {}, bounce {}\n", pixel.x, pixel.y, divergence.sample,
                    divergence.bounce);
     fmt::print("time          device {:.2f} s, reference {:.2f} s\n", outcome.deviceSeconds, outcome.referenceSeconds);
+    if (!outcome.tests.empty()) fmt::print("tests a ray   {}\n", outcome.tests);
     if (!outcome.diagnostics.clean()) fmt::print("diagnostics   not clean: render with --json to see the counts\n");
     if (outcome.validationMessages > 0) fmt::print("validation    {} messages\n", outcome.validationMessages);
     fmt::print("{}\n", outcome.passed ? "the two backends agree" : "THE TWO BACKENDS DISAGREE");
@@ -108,6 +139,7 @@ void printText(const Outcome& outcome) {
 void printJson(const Outcome& outcome) {
     nlohmann::ordered_json json = toJson(outcome.differences);
     json["device"] = outcome.device;
+    json["methods"] = toJson(outcome.methods);
     json["deviceSeconds"] = outcome.deviceSeconds;
     json["referenceSeconds"] = outcome.referenceSeconds;
     json["divergences"] = nlohmann::ordered_json::array();

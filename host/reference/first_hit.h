@@ -43,7 +43,10 @@ private:
     [[nodiscard]] Real openness(const Surface<Real>& surface, const PhiloxBlock& words,
                                 PathResult<Real>& result) const {
         const Vec3<Real> wi = scatterByCosine(surface, words).wi;
-        if (!tracing_.onOurSide(surface, wi)) return 0;
+        if (!tracing_.onOurSide(surface, wi)) {
+            result.record(PathEvent::noRay);
+            return 0;
+        }
         const Ray<Real> ray{surface.originTowards(wi), wi, ambientDistance_};
         return tracing_.visibility(ray, kNoPrimitive, result) == Visibility::clear ? Real(1) : Real(0);
     }

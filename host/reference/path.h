@@ -102,13 +102,10 @@ private:
     }
 
     void addLight(Path& path, const Surface<Real>& surface, std::optional<LightSample<Real>> light) const {
-        constexpr std::uint32_t kBlocked = 0, kReached = 1, kNoRay = 2;
         const Vec3<Real> f = light ? evaluate(surface, light->wi) : Vec3<Real>(0);
-        if (f == Vec3<Real>(0)) return path.result.record(kNoRay);
+        if (f == Vec3<Real>(0)) return path.result.record(PathEvent::noRay);
         light->shadowRay.origin = surface.originTowards(light->wi);
-        if (tracing_.visibility(light->shadowRay, light->primitive, path.result) == Visibility::blocked)
-            return path.result.record(kBlocked);
-        path.result.record(kReached);
+        if (tracing_.visibility(light->shadowRay, light->primitive, path.result) == Visibility::blocked) return;
         const Real cosine = glm::dot(light->wi, surface.ns);
         const Real weight = weightOfLight(*light, cosine / static_cast<Real>(kPi));
         path.result.radiance += path.throughput * f * light->emission * (cosine / light->pdf * weight);
@@ -141,8 +138,7 @@ private:
             path.throughput /= q;
             return Fate::goesOn;
         }
-        constexpr std::uint32_t kEndedByRoulette = 3;
-        path.result.record(kEndedByRoulette);
+        path.result.record(PathEvent::endedByRoulette);
         return Fate::ends;
     }
 

@@ -12,6 +12,9 @@
 
 namespace isolux {
 
+/// Words of a path's signature, besides the primitives that rays meet.
+enum class PathEvent : std::uint32_t { blocked = 0, reached = 1, noRay = 2, endedByRoulette = 3 };
+
 /// What one sample of one pixel leaves.
 template <typename Real> struct PathResult {
     Vec3<Real> radiance{0};                ///< or whatever else the integrator measures
@@ -21,7 +24,8 @@ template <typename Real> struct PathResult {
     TraversalTests tests;
     std::optional<FirstHit> firstHit;
 
-    void record(std::uint32_t event) { signature = (signature ^ event) * 16777619u; }
+    void record(std::uint32_t word) { signature = (signature ^ word) * 16777619u; }
+    void record(PathEvent event) { record(static_cast<std::uint32_t>(event)); }
 };
 
 /// The random words of one sample of one pixel.
@@ -66,7 +70,9 @@ public:
 
     [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored, PathResult<Real>& result) const {
         ++result.rays;
-        return caster_.visibility(ray, ignored, result.tests);
+        const Visibility visibility = caster_.visibility(ray, ignored, result.tests);
+        result.record(visibility == Visibility::clear ? PathEvent::reached : PathEvent::blocked);
+        return visibility;
     }
 
     void noteFirstHit(PathResult<Real>& result, const Surface<Real>& surface) const {

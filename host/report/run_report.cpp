@@ -85,13 +85,6 @@ std::string sceneText(const RunReport& report) {
                        report.firstSample, report.seed, depth);
 }
 
-std::string methodsText(const std::vector<MethodChoice>& methods) {
-    std::string text;
-    for (const MethodChoice& method : methods)
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", method.option, method.value);
-    return text;
-}
-
 std::string adaptiveText(const AdaptiveSummary& adaptive) {
     return formatLine("adaptive",
                       fmt::format("tolerance {}, {} to {} samples a pixel, {} on average, {:.1f} % of the "
@@ -147,7 +140,7 @@ std::string requestText(const RunReport& report) {
         text += formatLine("environment", fmt::format("{}, {}", formatColor(report.environment->radiance),
                                                       report.environment->extent));
     }
-    if (!report.methods.empty()) text += formatLine("methods", methodsText(report.methods));
+    if (!report.methods.empty()) text += formatLine("methods", formatMethods(report.methods));
     if (report.timeLimit) text += formatLine("time limit", fmt::format("{} s", formatNumber(*report.timeLimit)));
     if (!report.layers.empty()) text += formatLine("layers", fmt::format("{}", fmt::join(report.layers, ", ")));
     return text;
@@ -156,12 +149,6 @@ std::string requestText(const RunReport& report) {
 ordered_json environmentJson(const RunReport& report) {
     if (!report.environment) return {};
     return {{"radiance", toJson(report.environment->radiance)}, {"extent", report.environment->extent}};
-}
-
-ordered_json methodsJson(const std::vector<MethodChoice>& methods) {
-    ordered_json json = ordered_json::object();
-    for (const MethodChoice& method : methods) json[method.option] = method.value;
-    return json;
 }
 
 ordered_json adaptiveJson(const RunReport& report) {
@@ -205,6 +192,19 @@ ordered_json deviceJson(const RunReport& report) {
 }
 
 } // namespace
+
+std::string formatMethods(const std::vector<MethodChoice>& methods) {
+    std::string text;
+    for (const MethodChoice& method : methods)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", method.option, method.value);
+    return text;
+}
+
+ordered_json toJson(const std::vector<MethodChoice>& methods) {
+    ordered_json json = ordered_json::object();
+    for (const MethodChoice& method : methods) json[method.option] = method.value;
+    return json;
+}
 
 ImageQuality imageQuality(const Film& film) {
     double luminanceSum = 0.0;
@@ -273,7 +273,7 @@ ordered_json toJson(const RunReport& report) {
             {"maxDepth", report.maxDepth ? ordered_json(*report.maxDepth) : ordered_json()},
             {"camera", report.camera.empty() ? ordered_json() : ordered_json(report.camera)},
             {"environment", environmentJson(report)},
-            {"methods", methodsJson(report.methods)},
+            {"methods", toJson(report.methods)},
             {"timeLimitSeconds", report.timeLimit ? ordered_json(*report.timeLimit) : ordered_json()},
             {"adaptive", adaptiveJson(report)},
             {"untilError", errorTargetJson(report)},

@@ -28,6 +28,11 @@ struct MethodChoice {
     friend bool operator==(const MethodChoice&, const MethodChoice&) = default;
 };
 
+/// "light-sampling light, roulette constant:0.3"
+[[nodiscard]] std::string formatMethods(const std::vector<MethodChoice>& methods);
+/// The options as keys.
+[[nodiscard]] nlohmann::ordered_json toJson(const std::vector<MethodChoice>& methods);
+
 /// What adaptive sampling did.
 struct AdaptiveSummary {
     AdaptiveRule rule;

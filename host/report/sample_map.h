@@ -1,12 +1,14 @@
-// How many samples each pixel took, in false colour.
+// How many samples each pixel took, in false colour: where an adaptive render spent its time.
 #pragma once
 
-#include "film/film.h"
 #include "film/image.h"
+
+#include <cstdint>
 
 namespace isolux {
 
-/// R, G, B of the sequential ramp (heatmap.h), from 0 to `maxSamples`.
+/// R, G, B from dark for none to bright for `maxSamples` (the sequential ramp of heatmap.h) and the counts themselves
+/// as samples.Y. The metadata's isolux/sampleMapMax says which count is the brightest.
 [[nodiscard]] Image sampleMap(const Film& film, std::uint64_t maxSamples);
 
 } // namespace isolux

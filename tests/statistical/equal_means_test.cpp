@@ -64,13 +64,13 @@ struct Welch {
     }
 };
 
-/// The baseline: the reference by default methods, sixteen times the samples of a row.
+/// The baseline: the reference by default methods, four times the samples of a row.
 TEST(EqualMeans, OfEveryMethodThatPromisesThem) {
     const Scene scene = mixedLightsScene();
     const Device device({});
     Seeds seeds;
     RenderSettings settings = tinyImage();
-    settings.sampleCount *= 16;
+    settings.sampleCount *= 4;
     const std::vector<double> baseline =
         seeds.means(settings, [&](const RenderSettings& s) { return renderReference(scene, s, {}, {}); });
     std::vector<Method> methods{{"Default", Expectation::same, [](RenderSettings&) {}}};

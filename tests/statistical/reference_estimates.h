@@ -49,6 +49,30 @@ inline RenderSettings squareImage(std::uint32_t size, std::uint32_t samples) {
     return settings;
 }
 
+/// The cube [-1, 1]^3, fronts inwards.
+inline Mesh boxMesh(std::uint32_t material) {
+    Mesh mesh;
+    mesh.material = material;
+    for (std::uint32_t i = 0; i < 8; ++i) mesh.positions.push_back({i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1});
+    mesh.triangles = {{0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}, {0, 4, 5}, {0, 5, 1},
+                      {2, 3, 7}, {2, 7, 6}, {0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}};
+    return mesh;
+}
+
+inline const Vec3d kAlbedo(0.2, 0.5, 0.8);
+inline const Vec3d kEmission(3.0, 0.5, 1.0);
+inline const Vec3d kFurnace = kEmission / (1.0 - kAlbedo);
+
+/// A closed box of which every wall reflects and emits: the same radiance everywhere and in every direction.
+inline Scene furnaceBox(const Mat4d& worldFromObject) {
+    SceneBuilder builder;
+    builder.mesh(boxMesh(builder.material(kAlbedo, kEmission, Faces::front)), worldFromObject);
+    const Vec3d center(worldFromObject[3]);
+    const Vec3d corner(worldFromObject * glm::dvec4(1.0, 0.7, 0.9, 1.0));
+    builder.camera(center + (corner - center) * -0.5, corner, 1.2);
+    return builder.scene;
+}
+
 /// A white floor and a camera that looks at the world's origin on it from the side.
 inline SceneBuilder floorSeenFromTheSide(const Vec3d& albedo) {
     SceneBuilder builder;

@@ -24,7 +24,7 @@ inline void PrintTo(const Method& method, std::ostream* stream) { *stream << met
 
 [[nodiscard]] std::vector<Method> allMethods();
 
-/// The Cornell spheres with every kind of light: a lamp, a point, a spot and a directional light, half an environment.
+/// The Cornell spheres with every kind of light: a lamp, a point, a spot and a directional light, an environment.
 [[nodiscard]] Scene mixedLightsScene();
 
 } // namespace isolux::test

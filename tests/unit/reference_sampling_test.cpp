@@ -1,6 +1,6 @@
-// The sampling recipes of the CPU reference, its camera, and its light sampling.
-#include "reference/camera.h"
+// The sampling recipes of the CPU reference and its light sampling.
 #include "reference/lights.h"
+#include "reference/scattering.h"
 #include "unit/reference_scenes.h"
 
 #include <gtest/gtest.h>
@@ -66,6 +66,59 @@ TYPED_TEST(ReferenceSampling, ConcentricMapFollowsTheWrittenCases) {
     expectNear(sampleCosineHemisphere<Real>(Real(0), Real(0)), {-std::sqrt(0.5), -std::sqrt(0.5), 0});
 }
 
+TYPED_TEST(ReferenceSampling, UniformHemisphereHasItsMoments) {
+    using Real = TypeParam;
+    constexpr int kGrid = 400;
+    Vec3d mean(0.0), squares(0.0);
+    forEachGridPoint(kGrid, [&](double u, double v) {
+        const Vec3<Real> w = sampleUniformHemisphere(static_cast<Real>(u), static_cast<Real>(v));
+        ASSERT_NEAR(glm::dot(w, w), 1, 8 * std::numeric_limits<Real>::epsilon());
+        mean += Vec3d(w) / double(kGrid * kGrid);
+        squares += Vec3d(w * w) / double(kGrid * kGrid);
+    });
+    EXPECT_NEAR(glm::length(mean - Vec3d(0.0, 0.0, 0.5)), 0.0, 1e-6);
+    // Midpoints integrate z^2 = u^2 to 2/(24 * 400^2).
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(squares[axis], 1.0 / 3.0, 2.0 / (24.0 * 400 * 400) + 1e-6);
+    EXPECT_EQ(sampleUniformHemisphere(Real(0), Real(0)), Vec3<Real>(1, 0, 0));
+    EXPECT_NEAR(glm::length(sampleUniformHemisphere(Real(0.6), Real(0.25)) - Vec3<Real>(0, Real(0.8), Real(0.6))), 0,
+                4 * std::numeric_limits<Real>::epsilon());
+}
+
+TYPED_TEST(ReferenceSampling, ScatteredDirectionsCarryTheirDensityAndWeight) {
+    using Real = TypeParam;
+    constexpr int kGrid = 200;
+    Surface<Real> surface{};
+    surface.ns = glm::normalize(Vec3<Real>(1, 2, -2));
+    double uniform = 0.0;
+    forEachGridPoint(kGrid, [&](double u, double v) {
+        const PhiloxBlock words{static_cast<std::uint32_t>(u * 0x1p32), static_cast<std::uint32_t>(v * 0x1p32), 0, 0};
+        const auto flat = scatterUniformly(surface, words), lobe = scatterByCosine(surface, words);
+        ASSERT_NEAR(flat.pdf, 0.5 / kPi, 1e-7);
+        // Lambert's cos/pi over the density, whichever way.
+        ASSERT_NEAR(flat.weight, glm::dot(flat.wi, surface.ns) / static_cast<Real>(kPi) / flat.pdf, 1e-6);
+        ASSERT_NEAR(lobe.pdf, glm::dot(lobe.wi, surface.ns) / static_cast<Real>(kPi), 1e-7);
+        ASSERT_EQ(lobe.weight, 1);
+        uniform += double(flat.weight) / (kGrid * kGrid);
+    });
+    EXPECT_NEAR(uniform, 1.0, 1e-5) << "a white surface reflects everything";
+    EXPECT_GE(scatterUniformly(surface, {0, 0, 0, 0}).weight, 0) << "in the horizon";
+}
+
+TYPED_TEST(ReferenceSampling, DiskSamplesAreUniform) {
+    using Real = TypeParam;
+    constexpr int kGrid = 400;
+    Vec2d mean(0.0), squares(0.0);
+    forEachGridPoint(kGrid, [&](double u, double v) {
+        const Vec2<Real> p = sampleDisk(static_cast<Real>(u), static_cast<Real>(v));
+        ASSERT_LE(glm::dot(p, p), 1 + 4 * std::numeric_limits<Real>::epsilon());
+        mean += Vec2d(p) / double(kGrid * kGrid);
+        squares += Vec2d(p * p) / double(kGrid * kGrid);
+    });
+    EXPECT_NEAR(glm::length(mean), 0.0, 1e-6);
+    EXPECT_NEAR(squares.x, 0.25, 1e-4);
+    EXPECT_NEAR(squares.y, 0.25, 1e-4);
+}
+
 TYPED_TEST(ReferenceSampling, TriangleSamplesAreUniform) {
     using Real = TypeParam;
     constexpr int kGrid = 400;
@@ -113,58 +166,22 @@ TYPED_TEST(ReferenceSampling, ConeHeightDoesNotCancel) {
     }
 }
 
-TYPED_TEST(ReferenceSampling, PowerHeuristicSumsToOneAtTheEndsOfTheRange) {
+TYPED_TEST(ReferenceSampling, HeuristicsSumToOneAtTheEndsOfTheRange) {
     using Real = TypeParam;
     const std::array<double, 7> exponents = {-38, -20, -1, 0, 1, 20, 38};
     for (const double f : exponents)
         for (const double g : exponents) {
             const Real a = static_cast<Real>(std::pow(10.0, f)), b = static_cast<Real>(std::pow(10.0, g));
             EXPECT_NEAR(powerHeuristic(a, b) + powerHeuristic(b, a), 1, 1e-6) << f << ' ' << g;
+            EXPECT_NEAR(balanceHeuristic(a, b) + balanceHeuristic(b, a), 1, 1e-6) << f << ' ' << g;
         }
     EXPECT_NEAR(powerHeuristic(Real(1), Real(2)), 0.2, 1e-7);
     EXPECT_EQ(powerHeuristic(Real(3), Real(0)), 1);
     EXPECT_EQ(powerHeuristic(Real(0), Real(3)), 0);
-}
-
-TEST(ReferenceCamera, RaysPassThroughThePixels) {
-    Camera camera;
-    camera.position = {1, 2, 3};
-    camera.worldFromCamera = Mat3d(Vec3d(0, 0, -1), Vec3d(0, 1, 0), Vec3d(1, 0, 0)); // looks along -x
-    camera.yfov = kPi / 2;
-    RenderSettings settings;
-    settings.width = 200;
-    settings.height = 100;
-    const CameraRays<double> rays(camera, settings);
-    EXPECT_NEAR(glm::length(rays.through(100, 50, 0.0, 0.0).direction - Vec3d(-1, 0, 0)), 0.0, 1e-15);
-    EXPECT_NEAR(glm::length(rays.through(0, 0, 0.0, 0.0).direction - glm::normalize(Vec3d(-1, 1, 2))), 0.0, 1e-15);
-    EXPECT_NEAR(glm::length(rays.through(149, 74, 1.0, 1.0).direction - glm::normalize(Vec3d(-1, -0.5, -1))), 0.0,
-                1e-15);
-    EXPECT_EQ(rays.through(7, 8, 0.5, 0.5).origin, Vec3d(1, 2, 3));
-}
-
-template <typename Real> class ReferenceOrthographic : public ::testing::Test {};
-TYPED_TEST_SUITE(ReferenceOrthographic, RealTypes);
-
-TYPED_TEST(ReferenceOrthographic, RaysAreParallelFromAGridOnTheImagePlane) {
-    using Real = TypeParam;
-    Camera camera;
-    camera.projection = Projection::orthographic;
-    camera.position = {1, 2, 3};
-    camera.worldFromCamera = Mat3d(Vec3d(0, 0, -1), Vec3d(0, 1, 0), Vec3d(1, 0, 0)); // looks along -x
-    camera.ymag = 4.0;
-    RenderSettings settings;
-    settings.width = 32;
-    settings.height = 16; // pixels of edge 1/2: 8 over 16
-    const CameraRays<Real> rays(camera, settings);
-    for (std::uint32_t y = 0; y < settings.height; ++y)
-        for (std::uint32_t x = 0; x < settings.width; ++x) {
-            const Ray<Real> ray = rays.through(x, y, Real(0.25), Real(0.75));
-            ASSERT_EQ(ray.direction, Vec3<Real>(-1, 0, 0));
-            const double right = (x + 0.25) * 0.5 - 8.0, up = 4.0 - (y + 0.75) * 0.5;
-            ASSERT_EQ(Vec3d(ray.origin), Vec3d(1, 2, 3) + Vec3d(0, up, -right)) << "powers of two: exact";
-            ASSERT_EQ(ray.tMax, std::numeric_limits<Real>::infinity());
-        }
-    EXPECT_EQ(rays.depth({Real(-6), 50, 60}), 7) << "along the axis, from the camera's plane";
+    EXPECT_NEAR(balanceHeuristic(Real(1), Real(2)), 1.0 / 3.0, 1e-7);
+    EXPECT_EQ(balanceHeuristic(Real(3), Real(1)), Real(0.75));
+    EXPECT_EQ(balanceHeuristic(Real(3), Real(0)), 1);
+    EXPECT_EQ(balanceHeuristic(Real(0), Real(3)), 0);
 }
 
 template <typename Real> class ReferenceLights : public ::testing::Test {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reference/intersect.h"
+#include "reference/reference.h"
 #include "reference/sampling.h"
 
 #include <gtest/gtest.h>
@@ -144,6 +145,34 @@ inline Scene randomSoup(std::uint64_t seed) {
         builder.scene.spheres.push_back(
             {"", random.inCube(2.0) + Vec3d(10.0, -3.0, 0.1), std::pow(10.0, random.between(-3.0, 0.0)), 0});
     return builder.scene;
+}
+
+/// A floor, a lamp above it, a mirrored wedge and two spheres, one of which emits.
+inline Scene smallRoom() {
+    SceneBuilder builder;
+    const std::uint32_t lamp = builder.material({0.1, 0.1, 0.1}, {5.0, 4.0, 3.0}, Faces::front);
+    const std::uint32_t glow = builder.material({0.3, 0.3, 0.9}, {0.0, 1.0, 2.0}, Faces::front);
+    builder.material({0.8, 0.3, 0.2}, Vec3d(0.0), Faces::front);
+    builder.mesh(squareMesh(0), scaling({4.0, 4.0, 1.0}));
+    builder.mesh(squareMesh(lamp), translation({0.0, 0.0, 3.0}) * scaling({0.5, 0.5, -1.0}));
+    builder.mesh(triangleMesh({-1, 0, 0}, {1, 0, 0}, {0, 0.5, 2}, 3), scaling({-1.0, 1.0, 1.0}));
+    builder.scene.spheres = {{"", {1.0, -1.0, 0.6}, 0.5, 3}, {"", {-1.2, -1.0, 1.0}, 0.25, glow}};
+    builder.camera({0.5, -6.0, 2.5}, {0.0, 0.0, 0.8}, 0.6);
+    return builder.scene;
+}
+
+inline RenderSettings smallSettings(std::uint32_t samples) {
+    RenderSettings settings;
+    settings.width = 24;
+    settings.height = 17;
+    settings.seed = 0x123456789ABCDEFull;
+    settings.sampleCount = samples;
+    return settings;
+}
+
+/// The film, without progress.
+inline Film render(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options = {}) {
+    return renderReference(scene, settings, options, {});
 }
 
 /// Midpoints of an n x n grid over the unit square.

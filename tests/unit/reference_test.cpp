@@ -7,37 +7,12 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <map>
+
 namespace isolux {
 namespace {
 
 using namespace test;
-
-/// A floor, a lamp above it, a mirrored wedge and two spheres, one of which emits.
-Scene smallRoom() {
-    SceneBuilder builder;
-    const std::uint32_t lamp = builder.material({0.1, 0.1, 0.1}, {5.0, 4.0, 3.0}, Faces::front);
-    const std::uint32_t glow = builder.material({0.3, 0.3, 0.9}, {0.0, 1.0, 2.0}, Faces::front);
-    builder.material({0.8, 0.3, 0.2}, Vec3d(0.0), Faces::front);
-    builder.mesh(squareMesh(0), scaling({4.0, 4.0, 1.0}));
-    builder.mesh(squareMesh(lamp), translation({0.0, 0.0, 3.0}) * scaling({0.5, 0.5, -1.0}));
-    builder.mesh(triangleMesh({-1, 0, 0}, {1, 0, 0}, {0, 0.5, 2}, 3), scaling({-1.0, 1.0, 1.0}));
-    builder.scene.spheres = {{"", {1.0, -1.0, 0.6}, 0.5, 3}, {"", {-1.2, -1.0, 1.0}, 0.25, glow}};
-    builder.camera({0.5, -6.0, 2.5}, {0.0, 0.0, 0.8}, 0.6);
-    return builder.scene;
-}
-
-RenderSettings smallSettings(std::uint32_t samples) {
-    RenderSettings settings;
-    settings.width = 24;
-    settings.height = 17;
-    settings.seed = 0x123456789ABCDEFull;
-    settings.sampleCount = samples;
-    return settings;
-}
-
-Film render(const Scene& scene, const RenderSettings& settings, const ReferenceOptions& options = {}) {
-    return renderReference(scene, settings, options, {});
-}
 
 void expectSameFilm(const Film& a, const Film& b) {
     ASSERT_EQ(a.pixels.size(), b.pixels.size());
@@ -270,6 +245,34 @@ TEST(ReferenceFilm, ATimeLimitEndsTheRenderBetweenPasses) {
     EXPECT_GE(film.minSampleCount(), 1u);
     EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
     EXPECT_GT(last, 0.0);
+}
+
+TEST(ReferenceFilm, PixelsThatAreGoodEnoughTakeNoMoreSamples) {
+    ReferenceOptions options{.signatures = PathSignatures::on};
+    options.stopping.adaptive = AdaptiveRule{.tolerance = 0.2, .batch = 16, .minSamples = 16};
+    const RenderSettings settings = smallSettings(64);
+    const Film film = render(smallRoom(), settings, options);
+    std::map<std::uint64_t, Film> whole;
+    for (const std::uint32_t samples : {16u, 32u, 48u, 64u})
+        whole.emplace(samples, render(smallRoom(), smallSettings(samples), {.signatures = PathSignatures::on}));
+    for (std::size_t i = 0; i < film.pixels.size(); ++i) {
+        const std::uint64_t count = film.pixels[i].sampleCount;
+        ASSERT_EQ(whole.count(count), 1u) << count;
+        ASSERT_EQ(film.pixels[i], whole.at(count).pixels[i]);
+    }
+    EXPECT_EQ(film.minSampleCount(), 16u) << "around the lamp there is no noise";
+    EXPECT_EQ(film.maxSampleCount(), 64u);
+    EXPECT_LT(film.rays, whole.at(64).rays);
+}
+
+TEST(ReferenceFilm, EndsWhenTheImageIsGoodEnough) {
+    ReferenceOptions options;
+    options.stopping.relativeError = 0.1;
+    const Film film = render(smallRoom(), smallSettings(100000), options);
+    EXPECT_EQ(film.minSampleCount(), film.maxSampleCount());
+    EXPECT_LE(estimatedRelativeRmse(film), 0.1);
+    const auto count = static_cast<std::uint32_t>(film.maxSampleCount());
+    EXPECT_GT(estimatedRelativeRmse(render(smallRoom(), smallSettings(count - SamplePlan::kLargestPass))), 0.1);
 }
 
 TEST(ReferenceFilm, AnEmptySceneIsBlackAndCounted) {

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "core/error.h"
+#include "scene/render_settings.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -161,6 +162,55 @@ TEST(Scene, AnEnvironmentEmitsIfAnyChannelDoes) {
     EXPECT_TRUE((Environment{Vec3d(0.0, 0.0, 1e-30), EnvironmentExtent::upperHalf}.emits()));
     EXPECT_EQ((Environment{Vec3d(1.0), EnvironmentExtent::upperHalf}.solidAngle()), 2.0 * kPi);
     EXPECT_EQ((Environment{Vec3d(1.0), EnvironmentExtent::sphere}.solidAngle()), 4.0 * kPi);
+}
+
+// --- Settings ---
+
+RenderSettings counting(BounceSelection bounces, LightPart light, Integrator integrator, std::uint32_t maxDepth) {
+    RenderSettings settings;
+    settings.bounces = bounces;
+    settings.light = light;
+    settings.integrator = integrator;
+    settings.maxDepth = maxDepth;
+    return settings;
+}
+
+void expectRange(const RenderSettings& settings, std::uint32_t first, std::uint32_t last) {
+    const BounceRange range = countedBounces(settings);
+    EXPECT_EQ(range.first, first);
+    EXPECT_EQ(range.last, last);
+}
+
+TEST(RenderSettings, CountedBouncesFollowEveryChoice) {
+    using enum BounceSelection;
+    constexpr std::uint32_t kMany = kUnlimitedDepth;
+    expectRange({}, 0, kMany);
+    expectRange(counting(accumulate, LightPart::all, Integrator::path, 3), 0, 3);
+    expectRange(counting(last, LightPart::all, Integrator::path, 3), 3, 3);
+    expectRange(counting(last, LightPart::all, Integrator::path, 0), 0, 0);
+    expectRange(counting(accumulate, LightPart::direct, Integrator::path, kMany), 0, 1);
+    expectRange(counting(accumulate, LightPart::direct, Integrator::path, 0), 0, 0);
+    expectRange(counting(accumulate, LightPart::indirect, Integrator::path, kMany), 2, kMany);
+    expectRange(counting(last, LightPart::indirect, Integrator::path, 5), 5, 5);
+    expectRange(counting(accumulate, LightPart::all, Integrator::direct, kMany), 0, 1);
+}
+
+TEST(RenderSettings, NoBounceCountsWhereChoicesExcludeEachOther) {
+    using enum BounceSelection;
+    for (const RenderSettings& settings : {counting(last, LightPart::direct, Integrator::path, 2),
+                                           counting(accumulate, LightPart::indirect, Integrator::direct, 9),
+                                           counting(accumulate, LightPart::indirect, Integrator::path, 1)}) {
+        const BounceRange range = countedBounces(settings);
+        EXPECT_GT(range.first, range.last);
+    }
+}
+
+TEST(RenderSettings, DirectLightAndIndirectLightAreAllLight) {
+    const BounceRange direct = countedBounces(counting({}, LightPart::direct, Integrator::path, 7));
+    const BounceRange indirect = countedBounces(counting({}, LightPart::indirect, Integrator::path, 7));
+    EXPECT_EQ(direct.first, 0u);
+    EXPECT_EQ(direct.last + 1, indirect.first);
+    EXPECT_EQ(indirect.last, 7u);
 }
 
 } // namespace

@@ -52,7 +52,7 @@ TEST(StructLayout, PathKernel) {
                   MEMBER(RenderParameters, cameraUp), MEMBER(RenderParameters, cameraForward),
                   MEMBER(RenderParameters, lensRight), MEMBER(RenderParameters, lensUp),
                   MEMBER(RenderParameters, environment), MEMBER(RenderParameters, environmentLimits),
-                  MEMBER(RenderParameters, methods), MEMBER(RenderParameters, imageSeed),
+                  MEMBER(RenderParameters, imageSeed), MEMBER(RenderParameters, methods),
                   MEMBER(RenderParameters, depthLights), MEMBER(RenderParameters, lightSamples),
                   MEMBER(RenderParameters, tableOffsets), MEMBER(RenderParameters, sceneCounts),
                   MEMBER(RenderParameters, sampling)},
