@@ -121,33 +121,39 @@ def adaptive_words(figures):
     return " ".join(parts)
 
 
+RULE = ("The rule makes the relative error of pixels alike; RMSE asks for the absolute error. So adaptive sampling spends its "
+        "samples on dark pixels, and need not win by RMSE where it keeps its promise. A rule that looks at the samples it is "
+        "about to average tends to stop too early on pixels whose light is rare (Kirk and Arvo 1991): the mean comes out too "
+        "dark.")
+
+
+def adaptive_table(study, rows):
+    most, seeds = study.effort.adaptive_max, study.effort.adaptive_seeds
+    width, height = study.effort.adaptive_size
+    caption = (f"{width} × {height} pixels. A pixel stops when 1.96 standard errors of its luminance are at most the tolerance "
+               f"times its mean, and those of its neighbours of theirs, tested every 32 samples from the 64th on; all stop at "
+               f"{most}. Within tolerance: the share of the lit pixels whose luminance x has |x − r| ≤ tolerance · r against "
+               f"the reference r; {percent(CONFIDENCE)} is what the rule promises of those that stopped, less what the "
+               f"reference's own noise takes. Relative RMSE and the bias of the mean: over {seeds} seeds [95 %, t].")
+    call = f"isolux render SCENE -o image.exr --size {width}x{height} --max-depth {FULL_DEPTH} --seed 0...{seeds - 1} "
+    return table_block(caption, HEAD, rows, [f"{call}--sample-map samples.png --spp {most} --adaptive T", f"{call}--spp N"])
+
+
 def adaptive_section(study):
     most = study.effort.adaptive_max
-    blocks, rows, figures = [], [], []
+    pictures, rows, figures = [], [], []
     for scene in (study.scenes.spheres, study.scenes.dragon):
         for tolerance in study.effort.tolerances:
             entry = measure(study, scene, tolerance)
             rows += [method_row(scene, entry, method) for method in ("adaptive", "uniform")]
             figures.append(entry_figures(scene, entry, most))
             caption = f"{scene.stem}, tolerance {percent(tolerance)}, at most {most} samples a pixel"
-            blocks.append(pictures_block(caption, scene_pictures(study, entry)))
-    command = f"isolux render SCENE -o image.exr --sample-map samples.png --spp {most} --max-depth {FULL_DEPTH} --adaptive T"
-    table = table_block(
-        f"A pixel stops when 1.96 standard errors of its luminance are at most the tolerance times its mean, and those of its "
-        f"neighbours of theirs, tested every 32 samples from the 64th on; all stop at {most}. Within tolerance: the share of the lit pixels whose luminance x has "
-        f"|x − r| ≤ tolerance · r against the reference r; {percent(CONFIDENCE)} is what the rule promises of those that "
-        f"stopped, less what the reference's own noise takes. Relative RMSE and the bias of the mean: over "
-        f"{study.effort.adaptive_seeds} seeds [95 %, t].", HEAD, rows,
-        [command, f"isolux render SCENE -o image.exr --spp N --max-depth {FULL_DEPTH} --seed 0...{study.effort.adaptive_seeds - 1}"])
-    rule = text_block("The rule makes the relative error of pixels alike; RMSE asks for the absolute error. So adaptive sampling "
-                      "spends its samples on dark pixels, and need not win by RMSE where it keeps its promise. A rule that "
-                      "looks at the samples it is about to average stops too early on pixels whose light is rare (Kirk and "
-                      "Arvo 1991): the mean comes out too dark.")
+            pictures.append(pictures_block(caption, scene_pictures(study, entry)))
     first = figures[0]
     headline = (f"Adaptive at {percent(first['tolerance'])}, {first['scene']}: pixels within it, of those that stopped",
                 f"{percent(first['coverage']['withinOfStopped'])}; bias of the mean {interval(first['bias'], percent)}")
-    return section("adaptive", "Adaptive sampling", [table, text_block(adaptive_words(figures)), rule, *blocks],
-                   {"runs": figures}, [headline])
+    blocks = [adaptive_table(study, rows), text_block(adaptive_words(figures)), text_block(RULE), *pictures]
+    return section("adaptive", "Adaptive sampling", blocks, {"runs": figures}, [headline])
 
 
 def gallery_section(study):

@@ -141,7 +141,8 @@ def soft_section(study):
                              study.pictures({samples_name(n): one for n, one in at_one.items()})),
               pictures_block(f"{scene.stem}, direct light, as many rays in all",
                              study.pictures({samples_name(n): one for n, one in at_rays.items()})),
-              chart_block("Error on surfaces against light samples a shading point", "light samples", "relative RMSE", lines, [command]),
+              chart_block("Error on surfaces against light samples a shading point", "light samples", "relative RMSE",
+                          lines, [command]),
               table_block(f"Relative RMSE over {study.effort.seeds} seeds [95 %, t].", head, list(soft_rows(at_one, at_rays)),
                           [command]),
               text_block(soft_verdict(at_one, at_rays))]

@@ -135,8 +135,8 @@ def variance_words(scene):
     factor = albedo**2 / survival
     state = ("below 1, so the variance is finite" if factor < 1 else
              "not below 1, so among surfaces of that albedo alone the variance is infinite")
-    return (f"A path that goes on with probability 1 − P carries 1/(1 − P) more, so a bounce off albedo a multiplies the mean of "
-            f"the squared weight by a²/(1 − P). Where light stays among surfaces with a² > 1 − P (a > {number(survival**0.5)} "
+    return (f"A path that goes on with probability 1 − P carries 1/(1 − P) more, so a bounce off albedo a multiplies the mean "
+            f"of the squared weight by a²/(1 − P). Where light stays among surfaces with a² > 1 − P (a > {number(survival**0.5)} "
             f"for P = {TERMINATION}) that mean grows without bound with the depth: constant termination has infinite variance "
             f"there, however many samples are taken, while termination by throughput never lets a weight grow. The largest "
             f"albedo of {scene.stem} is {number(albedo)}: a²/(1 − P) = {number(factor)}, {state}.")
@@ -186,7 +186,7 @@ def roulette_section(study):
                for bounces, measured in found.items()]
     deepest = found[max(found)]
     headline = (f"Efficiency at depth {max(found)} against no roulette",
-                f"constant {interval(against_off(deepest, 'constant'))}, throughput {interval(against_off(deepest, 'throughput'))}")
+                ", ".join(f"{name} {interval(against_off(deepest, name))}" for name in ("constant", "throughput")))
     return section("roulette", "Russian roulette", blocks, {"depths": figures}, [headline])
 
 
@@ -204,8 +204,8 @@ def ladder_measured(study):
 def slope_words(where, slope):
     low, estimate, high = slope
     agrees = "holds" if low <= -0.5 <= high else "does not hold"
-    return (f"Over {where} the slope of log error against log samples is {number(estimate)} [{number(low)}, {number(high)}] (least squares, "
-            f"bootstrap over the seeds); the interval {agrees} the {number(-0.5)} of independent samples.")
+    return (f"Over {where} the slope of log error against log samples is {number(estimate)} [{number(low)}, {number(high)}] "
+            f"(least squares, bootstrap over the seeds); the interval {agrees} the {number(-0.5)} of independent samples.")
 
 
 def ladder_rows(found):
