@@ -6,7 +6,7 @@ import html
 
 from study_chart import chart
 from study_style import SCRIPT, STYLE
-from study_text import NO_BREAK, number, percent, seconds
+from study_text import flag, number, percent, seconds
 
 
 def text(value):
@@ -29,10 +29,7 @@ def error_text(item):
     """Of the whole image, with the mark of a reference that is not clean enough; on surfaces if that is something else."""
     if item["relativeRmse"] is None:
         return ""
-    error = f"error {percent(item['relativeRmse'])}"
-    if item["flagged"]:
-        share = item["referenceShare"]
-        error += f" ⚑{NO_BREAK}{percent(share, 2)}" if share and share > 0 else " ⚑"
+    error = f"error {percent(item['relativeRmse'])}" + flag(item["flagged"], item["referenceShare"])
     if item["surfaceRmse"] not in (None, item["relativeRmse"]):
         error += f", on surfaces {percent(item['surfaceRmse'])}"
     return error

@@ -7,7 +7,7 @@ from study_plan import FULL_DEPTH, depth, largest_albedo
 from study_runs import root_mean_square
 from study_statistics import inefficiency_ratio, log_log_slope
 from study_text import (chart_block, error_point, interval, number, percent, pictures_block, section, seconds, series,
-                        surface_error, table_block, text_block, times, whole_error)
+                        surface_error, table_block, text_block, whole_error)
 
 LAST_BOUNCE = 5
 COLORS = ["R", "G", "B"]
@@ -149,12 +149,11 @@ def roulette_words(found):
     for name in ("constant", "throughput"):
         low, ratio, high = against_off(measured, name)
         sure = low is not None and (low > 1 or high < 1)
-        verdict = "more" if ratio > 1 else "less"
         parts.append(f"roulette by {name if name == 'throughput' else 'a constant'} takes "
                      f"{percent(measured[name].median_seconds / measured['off'].median_seconds)} of the time and has "
                      f"{percent(measured[name].surface_rmse[1] / measured['off'].surface_rmse[1])} of the error on "
                      f"surfaces of none: "
-                     f"{times(ratio)} the efficiency, {verdict if sure else 'no difference beyond the interval'}")
+                     f"{number(ratio)} times the efficiency{'' if sure else ', which the interval does not tell from none'}")
     return f"At a depth of {deepest}, " + "; ".join(parts) + "."
 
 
@@ -172,7 +171,8 @@ def roulette_section(study):
     head = ["maximum depth", "roulette", "rays a sample", "time", "error, whole image", "error on surfaces",
             "efficiency against off"]
     table = table_block(f"{scene.stem}, {spp} samples a pixel. Relative RMSE over {study.effort.seeds} seeds [95 %, t]; "
-                        "efficiency 1/(mean squared error × time) with a bootstrap interval over the seeds.",
+                        "efficiency 1/(mean squared error on surfaces × time) with a bootstrap interval over the seeds; times are "
+                        "medians of runs in turn, and what else the machine did in them is not in the interval.",
                         head, list(roulette_rows(found)), commands)
     lines = [series(f"roulette {name}", [[bounces + 1, measured[name].median_seconds] for bounces, measured in found.items()])
              for name in ROULETTES]
@@ -242,5 +242,5 @@ def samples_section(study):
               text_block(slope_words("the whole image", slope) + " " + slope_words("surfaces", surface_slope))]
     figures = {"slope": slope, "surfaceSlope": surface_slope,
                "relativeRmse": {spp: one.relative_rmse for spp, one in found.items()}}
-    headline = ("Slope of log error against log samples", f"{interval(slope)} over the whole image")
+    headline = ("Slope of log error against log samples", f"{interval(slope)} over the whole image, {interval(surface_slope)} on surfaces")
     return section("samples", "Samples a pixel", blocks, figures, [headline])
