@@ -87,15 +87,16 @@ class Effort:
     adaptive_max: int = 1024
     adaptive_seeds: int = 4
     gallery_spp: int = 32
-    reference_spp: int = 256
-    long_reference_spp: int = 2048
+    reference_spp: int = 512
+    long_reference_spp: int = 4096
+    adaptive_reference_spp: int = 8192
 
 
 REDUCED = Effort(size=(32, 32), seeds=3, normals_spp=4, timing_size=(16, 12), timing_repeats=1, timing_seconds=0.05,
                  light_spp=4, light_depths=(FULL_DEPTH,), light_samples=(1, 4), bounce_spp=8, roulette_spp=4,
                  roulette_depths=(2, FULL_DEPTH), ladder=(1, 4, 16, 64), ladder_samples=192, tolerances=(0.2,),
                  adaptive_size=(32, 32), adaptive_max=512, adaptive_seeds=2, gallery_spp=4, reference_spp=128,
-                 long_reference_spp=1024)
+                 long_reference_spp=1024, adaptive_reference_spp=1024)
 
 
 class Study:
