@@ -6,13 +6,16 @@ from study_exr import luminance, read_channels
 from study_plan import FULL_DEPTH, depth
 from study_statistics import inefficiency_ratio, mean_interval, t_quantile
 from study_text import (interval, number, percent, pictures_block, section, seconds, surface_error, table_block, text_block,
-                        times, whole_error)
+                        whole_error)
 
 CHANNELS = ["R", "G", "B", "samples.Y"]
 FULL = depth(FULL_DEPTH)
 
 # Of a render whose samples depend on each other (host/scene/render_settings.h).
 REPLICATES = 16
+
+# Of the renders that tell what a uniform sample costs.
+PILOT_SPP = 64
 
 # Of an interval of 1.96 standard errors.
 CONFIDENCE = 0.95
@@ -51,22 +54,20 @@ def mean_bias(measured, reference):
 
 def adaptive_requests(study, scene, tolerance):
     options = [*FULL, "--adaptive", str(tolerance)]
-    return [study.request(scene, options, study.effort.adaptive_max, seed=seed, sample_map=True)
-            for seed in range(study.effort.adaptive_seeds)]
-
-
-def uniform_cost(study, scene):
-    """Seconds for a sample in every pixel."""
-    run = study.runner.render(study.request(scene, FULL, 64, seed=99))
-    return run.seconds / run.spp
+    return study.seeds(scene, options, study.effort.adaptive_max, study.effort.adaptive_seeds,
+                       size=study.effort.adaptive_size, sample_map=True)
 
 
 def measure(study, scene, tolerance):
     """Adaptive, and uniform with the samples that fit the same time."""
-    reference = study.full_reference(scene)
-    adaptive = study.runner.measured(adaptive_requests(study, scene, tolerance), reference)
-    spp = max(2, round(adaptive.median_seconds / uniform_cost(study, scene)))
-    uniform = study.runner.measured(study.seeds(scene, FULL, spp, study.effort.adaptive_seeds), reference)
+    size, seeds = study.effort.adaptive_size, study.effort.adaptive_seeds
+    reference = study.reference(scene, FULL, study.effort.adaptive_reference_spp, size=size)
+    groups = {"adaptive": adaptive_requests(study, scene, tolerance),
+              "pilot": study.seeds(scene, FULL, PILOT_SPP, seeds, size=size)}
+    found = study.runner.interleaved(groups, reference)
+    adaptive = found["adaptive"]
+    spp = max(2, round(adaptive.median_seconds / found["pilot"].seconds_per_spp))
+    uniform = study.runner.measured(study.seeds(scene, FULL, spp, seeds, size=size), reference)
     return {"tolerance": tolerance, "adaptive": adaptive, "uniform": uniform,
             "adaptiveCoverage": mean_coverage(adaptive, reference, tolerance),
             "uniformCoverage": mean_coverage(uniform, reference, tolerance),
@@ -78,15 +79,16 @@ def method_row(scene, entry, method):
     return [scene.stem, percent(entry["tolerance"]), method, number(statistics.fmean(run.spp for run in measured.runs)),
             seconds(measured.median_seconds), percent(found["atMaximum"]) if method == "adaptive" else "–",
             percent(found["within"]), percent(found["withinOfStopped"]) if method == "adaptive" else "–",
-            whole_error(measured), surface_error(measured), interval(entry[method + "Bias"], percent)]
+            whole_error(measured), surface_error(measured),
+            interval(against_uniform(entry)) if method == "adaptive" else "1", interval(entry[method + "Bias"], percent)]
 
 
-HEAD = ["scene", "tolerance", "method", "mean spp", "time", "pixels at the maximum", "within tolerance",
-        "of those that stopped", "error, whole image", "error on surfaces", "bias of the mean"]
+HEAD = ["scene", "tolerance", "method", "mean spp", "time", "lit pixels at the maximum", "within tolerance",
+        "of those that stopped", "error, whole image", "error on surfaces", "time for uniform's error", "bias of the mean"]
 
 
 def against_uniform(entry):
-    """How many times longer adaptive takes for the error of uniform sampling: below 1 it gains."""
+    """How many times longer adaptive takes for uniform sampling's error on surfaces: below 1 it gains."""
     one, other = entry["adaptive"], entry["uniform"]
     return inefficiency_ratio(one.mses, one.seconds, other.mses, other.seconds)
 
@@ -108,52 +110,58 @@ def entry_figures(scene, entry, most):
 
 
 def adaptive_words(figures):
-    parts = []
-    for one in figures:
-        low, bias, high = one["bias"]
-        share = one["coverage"]["withinOfStopped"]
-        sure = low is not None and (low > 0 or high < 0)
-        stopped = "no pixel stopped" if share is None else f"of the pixels that stopped {percent(share)} are within it"
-        parts.append(f"{one['scene']} at {percent(one['tolerance'])}: {stopped}, the mean is {percent(bias)} off"
-                     f"{'' if sure else ', which the interval does not tell from none'}; time for uniform's error on surfaces "
-                     f"{times(one['timeForErrorOfUniform'][1])}.")
-    return " ".join(parts)
+    """What the rule kept, what it cost, and whether the mean shows it."""
+    shares = [one["coverage"]["withinOfStopped"] for one in figures if one["coverage"]["withinOfStopped"] is not None]
+    biased = sum(one["bias"][0] > 0 or one["bias"][2] < 0 for one in figures)
+    sooner = sum(one["timeForErrorOfUniform"][2] < 1 for one in figures)
+    later = sum(one["timeForErrorOfUniform"][0] > 1 for one in figures)
+    largest = max(abs(one["bias"][1]) for one in figures)
+    return (f"Of the pixels that stopped before the maximum, {percent(min(shares))} to {percent(max(shares))} are within the "
+            f"tolerance. The mean lies off the reference's by more than its interval in {biased} of {len(figures)} cases, at "
+            f"most by {percent(largest)}. Adaptive sampling reaches uniform sampling's error on surfaces sooner in {sooner} of "
+            f"{len(figures)} cases and later in {later}.")
+
+
+RULE = ("The rule makes the relative error of pixels alike; RMSE asks for the absolute error. So adaptive sampling spends its "
+        "samples on dark pixels, and need not win by RMSE where it keeps its promise. A rule that looks at the samples it is "
+        "about to average tends to stop too early on pixels whose light is rare, which makes the mean too dark (Kirk and Arvo "
+        "1991); the least number of samples and the neighbours are there against that.")
+
+
+def adaptive_table(study, rows):
+    most, seeds = study.effort.adaptive_max, study.effort.adaptive_seeds
+    width, height = study.effort.adaptive_size
+    caption = (f"{width} × {height} pixels. A pixel stops when 1.96 standard errors of its luminance are at most the tolerance "
+               f"times its mean, and those of its neighbours of theirs, tested every 32 samples from the 64th on; all stop at "
+               f"{most}. Within tolerance: the share of the lit pixels whose luminance x has |x − r| ≤ tolerance · r against "
+               f"the reference r; {percent(CONFIDENCE)} is what the rule promises of those that stopped, less what the "
+               f"reference's own noise takes. Relative RMSE and the bias of the mean: over {seeds} seeds [95 %, t].")
+    call = f"isolux render SCENE -o image.exr --size {width}x{height} --max-depth {FULL_DEPTH} --seed 0...{seeds - 1} "
+    return table_block(caption, HEAD, rows, [f"{call}--sample-map samples.png --spp {most} --adaptive T", f"{call}--spp N"])
 
 
 def adaptive_section(study):
     most = study.effort.adaptive_max
-    blocks, rows, figures = [], [], []
+    pictures, rows, figures = [], [], []
     for scene in (study.scenes.spheres, study.scenes.dragon):
         for tolerance in study.effort.tolerances:
             entry = measure(study, scene, tolerance)
             rows += [method_row(scene, entry, method) for method in ("adaptive", "uniform")]
             figures.append(entry_figures(scene, entry, most))
             caption = f"{scene.stem}, tolerance {percent(tolerance)}, at most {most} samples a pixel"
-            blocks.append(pictures_block(caption, scene_pictures(study, entry)))
-    command = f"isolux render SCENE -o image.exr --sample-map samples.png --spp {most} --max-depth {FULL_DEPTH} --adaptive T"
-    table = table_block(
-        f"A pixel stops when 1.96 standard errors of its luminance are at most the tolerance times its mean, and those of its "
-        f"neighbours of theirs, tested every 32 samples from the 64th on; all stop at {most}. Within tolerance: the share of the lit pixels whose luminance x has "
-        f"|x − r| ≤ tolerance · r against the reference r; {percent(CONFIDENCE)} is what the rule promises of those that "
-        f"stopped, less what the reference's own noise takes. Relative RMSE and the bias of the mean: over "
-        f"{study.effort.adaptive_seeds} seeds [95 %, t].", HEAD, rows,
-        [command, f"isolux render SCENE -o image.exr --spp N --max-depth {FULL_DEPTH} --seed 0...{study.effort.adaptive_seeds - 1}"])
-    rule = text_block("The rule makes the relative error of pixels alike; RMSE asks for the absolute error. So adaptive sampling "
-                      "spends its samples on dark pixels, and need not win by RMSE where it keeps its promise. A rule that "
-                      "looks at the samples it is about to average stops too early on pixels whose light is rare (Kirk and "
-                      "Arvo 1991): the mean comes out too dark.")
+            pictures.append(pictures_block(caption, scene_pictures(study, entry)))
     first = figures[0]
     headline = (f"Adaptive at {percent(first['tolerance'])}, {first['scene']}: pixels within it, of those that stopped",
                 f"{percent(first['coverage']['withinOfStopped'])}; bias of the mean {interval(first['bias'], percent)}")
-    return section("adaptive", "Adaptive sampling", [table, text_block(adaptive_words(figures)), rule, *blocks],
-                   {"runs": figures}, [headline])
+    blocks = [adaptive_table(study, rows), text_block(adaptive_words(figures)), text_block(RULE), *pictures]
+    return section("adaptive", "Adaptive sampling", blocks, {"runs": figures}, [headline])
 
 
 def gallery_section(study):
     items = []
     for scene in study.scenes.gallery:
         run = study.runner.render(study.request(scene, FULL, study.effort.gallery_spp))
-        compared, = study.runner.compared([run], study.reference(scene, FULL))
+        compared, = study.runner.compared([run], study.reference(scene, FULL, 2 * study.effort.reference_spp))
         items.append(study.picture(run, scene.stem, compared))
     block = pictures_block("The scenes of the report's part on global illumination", items)
     return section("gallery", "Global illumination: bunny, dragon, blob, bench", [block], {"scenes": len(items)}, [])

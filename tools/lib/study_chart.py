@@ -98,7 +98,8 @@ def grid(x, y):
 
 def titles(block):
     middle = (TOP + HEIGHT - BOTTOM) / 2
-    yield f'<text class="axis" x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 8}" text-anchor="middle">{html.escape(block["x"])}</text>'
+    center = (LEFT + WIDTH - RIGHT) / 2
+    yield f'<text class="axis" x="{center}" y="{HEIGHT - 8}" text-anchor="middle">{html.escape(block["x"])}</text>'
     yield (f'<text class="axis" transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">'
            f'{html.escape(block["y"])}</text>')
 

@@ -100,6 +100,10 @@ def rays_a_sample(measured):
     return report["rays"] / report["samples"]
 
 
+def samples_name(count):
+    return f"{count} light sample{'s' if count > 1 else ''}"
+
+
 def soft_rows(at_one, at_rays):
     for count, one in at_one.items():
         equal = at_rays[count]
@@ -116,7 +120,7 @@ def soft_verdict(at_one, at_rays):
             f"from {percent(at_one[fewest].surface_rmse[1])} to {percent(at_one[most].surface_rmse[1])}; what is left are the "
             f"edges of shapes, one camera ray a pixel, which no shadow ray smooths. Over the whole image the edge of the light "
             f"itself hides this. With the same rays in all, "
-            f"{best} light sample{'s' if best > 1 else ''} a shading point {'are' if best > 1 else 'is'} best "
+            f"{samples_name(best)} a shading point {'are' if best > 1 else 'is'} best "
             f"({percent(errors[best])}).")
 
 
@@ -127,7 +131,6 @@ def soft_section(study):
     most_rays = rays_a_sample(at_one[max(counts)])
     equal = {n: study.seeds(scene, soft_options(n), max(1, round(most_rays / rays_a_sample(at_one[n])))) for n in counts}
     at_rays = study.runner.interleaved(equal, reference)
-    name = "{} light samples".format
     errors = ["error, whole image", "error on surfaces"]
     head = ["light samples", "rays a sample", "time at 1 spp", *errors, "spp at equal rays", "million rays", "time", *errors]
     command = (f"isolux render {scene.name} -o image.exr --spp N --seed 0...{study.effort.seeds - 1} --max-depth 1 "
@@ -135,10 +138,11 @@ def soft_section(study):
     lines = [series(words, [error_point(n, one.surface_rmse) for n, one in found.items()])
              for words, found in (("1 sample a pixel", at_one), ("equal rays", at_rays))]
     blocks = [pictures_block(f"{scene.stem}, direct light, 1 sample a pixel",
-                             study.pictures({name(n): one for n, one in at_one.items()})),
+                             study.pictures({samples_name(n): one for n, one in at_one.items()})),
               pictures_block(f"{scene.stem}, direct light, as many rays in all",
-                             study.pictures({name(n): one for n, one in at_rays.items()})),
-              chart_block("Error on surfaces against light samples a shading point", "light samples", "relative RMSE", lines, [command]),
+                             study.pictures({samples_name(n): one for n, one in at_rays.items()})),
+              chart_block("Error on surfaces against light samples a shading point", "light samples", "relative RMSE",
+                          lines, [command]),
               table_block(f"Relative RMSE over {study.effort.seeds} seeds [95 %, t].", head, list(soft_rows(at_one, at_rays)),
                           [command]),
               text_block(soft_verdict(at_one, at_rays))]

@@ -6,7 +6,7 @@ import html
 
 from study_chart import chart
 from study_style import SCRIPT, STYLE
-from study_text import NO_BREAK, number, percent, seconds
+from study_text import flag, number, percent, seconds
 
 
 def text(value):
@@ -26,12 +26,12 @@ def commands(lines):
 
 
 def error_text(item):
+    """Of the whole image, with the mark of a reference that is not clean enough; on surfaces if that is something else."""
     if item["relativeRmse"] is None:
         return ""
-    error = f"error {percent(item['relativeRmse'])}"
-    if item["flagged"]:
-        share = item["referenceShare"]
-        error += f" ⚑{NO_BREAK}{percent(share, 2)}" if share and share > 0 else " ⚑"
+    error = f"error {percent(item['relativeRmse'])}" + flag(item["flagged"], item["referenceShare"])
+    if item["surfaceRmse"] not in (None, item["relativeRmse"]):
+        error += f", on surfaces {percent(item['surfaceRmse'])}"
     return error
 
 
@@ -40,7 +40,8 @@ def picture(item, output):
     figures = [f"{number(item['spp'])} spp", seconds(item["seconds"]), error_text(item)]
     mark = f'<span class="mark" title="{text(item["standIn"])}">stand-in</span>' if item["standIn"] else ""
     return (f'<figure><img alt="{text(item["scene"])}: {text(item["label"])}" src="{embedded(output / item["image"])}">'
-            f'<figcaption><b>{text(item["label"])}</b> {mark}<span>{", ".join(filter(None, figures))}</span></figcaption></figure>')
+            f'<figcaption><b>{text(item["label"])}</b> {mark}'
+            f'<span>{", ".join(filter(None, figures))}</span></figcaption></figure>')
 
 
 def reasons(items):
@@ -49,7 +50,8 @@ def reasons(items):
     for item in items:
         if item["standIn"]:
             found.setdefault(item["standIn"], {})[item["scene"]] = True
-    return "".join(f"<p class=standin>Stand-in: {text(', '.join(scenes))}, {text(reason)}.</p>" for reason, scenes in found.items())
+    return "".join(f"<p class=standin>Stand-in: {text(', '.join(scenes))}, {text(reason)}.</p>"
+                   for reason, scenes in found.items())
 
 
 def choice(name, items, chosen):
@@ -60,8 +62,9 @@ def choice(name, items, chosen):
 
 def comparator(items):
     """Two of the images over each other, with a slider between them; shown where the script runs, which fills it."""
-    return (f'<div class="compare" hidden><div class="choices">{choice("left", items, 0)}{choice("right", items, len(items) - 1)}'
-            '</div><div class="stage"><img class="under" alt=""><img class="over" alt=""><i></i></div>'
+    choices = choice("left", items, 0) + choice("right", items, len(items) - 1)
+    return (f'<div class="compare" hidden><div class="choices">{choices}</div>'
+            '<div class="stage"><img class="under" alt=""><img class="over" alt=""><i></i></div>'
             '<label class="slide">boundary <input type="range" min="0" max="100" value="50" step="1"></label></div>')
 
 
@@ -80,8 +83,8 @@ def pictures(block, output):
 def table(block, _):
     heads = "".join(f"<th scope=col>{text(cell)}</th>" for cell in block["head"])
     rows = "".join("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>" for row in block["rows"])
-    return (f'<div class="block"><p>{text(block["caption"])}</p><div class="scroll" tabindex=0><table><thead><tr>{heads}</tr></thead>'
-            f'<tbody>{rows}</tbody></table></div>{commands(block["commands"])}</div>')
+    return (f'<div class="block"><p>{text(block["caption"])}</p><div class="scroll" tabindex=0><table>'
+            f'<thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>{commands(block["commands"])}</div>')
 
 
 def chart_figure(block, _):
@@ -129,7 +132,8 @@ def page(results, output):
 <title>Isolux: a path-tracing study</title><style>{STYLE}</style></head><body>
 <h1>Isolux: a path-tracing study</h1>
 {facts}
-<div class="scroll"><table class="summary"><thead><tr><th scope=col>what</th><th scope=col>figure</th></tr></thead><tbody>{rows}</tbody></table></div>
+<div class="scroll"><table class="summary"><thead><tr><th scope=col>what</th><th scope=col>figure</th></tr></thead>
+<tbody>{rows}</tbody></table></div>
 <p>{text(EXPLANATION)}</p>
 <nav>{contents(results["sections"])}</nav>
 {body}

@@ -7,7 +7,7 @@ from study_plan import FULL_DEPTH, depth, largest_albedo
 from study_runs import root_mean_square
 from study_statistics import inefficiency_ratio, log_log_slope
 from study_text import (chart_block, error_point, interval, number, percent, pictures_block, section, seconds, series,
-                        surface_error, table_block, text_block, times, whole_error)
+                        surface_error, table_block, text_block, whole_error)
 
 LAST_BOUNCE = 5
 COLORS = ["R", "G", "B"]
@@ -35,18 +35,19 @@ def sum_check(alone, accumulated):
             "beyond": sum(difference > bound for difference in differences), "values": len(differences)}
 
 
-def bounce_run(study, scene, options, spp):
+def bounce_run(study, scene, options, spp, reference):
     """A render and how far it is from its reference."""
     run = study.runner.render(study.request(scene, options, spp))
-    compared, = study.runner.compared([run], study.reference(scene, options))
+    compared, = study.runner.compared([run], reference)
     return run, compared
 
 
 def bounce_pictures(study, mode):
-    found = []
+    scene, found = study.scenes.bunny, []
     for bounce in range(LAST_BOUNCE + 1):
         options = [*depth(bounce), "--bounces", mode, *NO_ROULETTE]
-        run, compared = bounce_run(study, study.scenes.bunny, options, study.effort.bounce_spp)
+        reference = study.reference(scene, options) if mode == "last" else study.depth_reference(scene, bounce)
+        run, compared = bounce_run(study, scene, options, study.effort.bounce_spp, reference)
         words = f"bounce {bounce} alone" if mode == "last" else f"up to bounce {bounce}"
         found.append((run, study.picture(run, words, compared)))
     return [run for run, _ in found], [item for _, item in found]
@@ -56,7 +57,8 @@ def part_pictures(study):
     items = []
     for part in ("all", "direct", "indirect"):
         options = [*depth(FULL_DEPTH), "--light", part]
-        run, compared = bounce_run(study, study.scenes.spheres, options, 4 * study.effort.bounce_spp)
+        reference = study.reference(study.scenes.spheres, options, 2 * study.effort.reference_spp)
+        run, compared = bounce_run(study, study.scenes.spheres, options, study.effort.bounce_spp, reference)
         items.append(study.picture(run, {"all": "all light"}.get(part, f"{part} light alone"), compared))
     return items
 
@@ -80,7 +82,7 @@ def bounces_section(study):
     total = mean_of(accumulated_runs[-1])
     rows = [[bounce, number(mean_of(run)), percent(mean_of(run) / total), percent(mean_of(whole) / total)]
             for bounce, (run, whole) in enumerate(zip(alone_runs, accumulated_runs))]
-    table = table_block(f"{scene.stem}: mean luminance of each bounce, and its share of the first {LAST_BOUNCE}",
+    table = table_block(f"{scene.stem}: mean luminance of each bounce, and its share of bounces 0 to {LAST_BOUNCE}",
                         ["bounce", "mean luminance", "share", "share so far"], rows,
                         [f"isolux render {scene.name} -o image.exr --max-depth B --bounces last|accumulate --roulette off"])
     blocks = [pictures_block(f"{scene.stem}, bounces accumulated", accumulated),
@@ -133,8 +135,8 @@ def variance_words(scene):
     factor = albedo**2 / survival
     state = ("below 1, so the variance is finite" if factor < 1 else
              "not below 1, so among surfaces of that albedo alone the variance is infinite")
-    return (f"A path that goes on with probability 1 − P carries 1/(1 − P) more, so a bounce off albedo a multiplies the mean of "
-            f"the squared weight by a²/(1 − P). Where light stays among surfaces with a² > 1 − P (a > {number(survival**0.5)} "
+    return (f"A path that goes on with probability 1 − P carries 1/(1 − P) more, so a bounce off albedo a multiplies the mean "
+            f"of the squared weight by a²/(1 − P). Where light stays among surfaces with a² > 1 − P (a > {number(survival**0.5)} "
             f"for P = {TERMINATION}) that mean grows without bound with the depth: constant termination has infinite variance "
             f"there, however many samples are taken, while termination by throughput never lets a weight grow. The largest "
             f"albedo of {scene.stem} is {number(albedo)}: a²/(1 − P) = {number(factor)}, {state}.")
@@ -147,12 +149,11 @@ def roulette_words(found):
     for name in ("constant", "throughput"):
         low, ratio, high = against_off(measured, name)
         sure = low is not None and (low > 1 or high < 1)
-        verdict = "more" if ratio > 1 else "less"
         parts.append(f"roulette by {name if name == 'throughput' else 'a constant'} takes "
                      f"{percent(measured[name].median_seconds / measured['off'].median_seconds)} of the time and has "
                      f"{percent(measured[name].surface_rmse[1] / measured['off'].surface_rmse[1])} of the error on "
                      f"surfaces of none: "
-                     f"{times(ratio)} the efficiency, {verdict if sure else 'no difference beyond the interval'}")
+                     f"{number(ratio)} times the efficiency{'' if sure else ', which the interval does not tell from none'}")
     return f"At a depth of {deepest}, " + "; ".join(parts) + "."
 
 
@@ -170,7 +171,8 @@ def roulette_section(study):
     head = ["maximum depth", "roulette", "rays a sample", "time", "error, whole image", "error on surfaces",
             "efficiency against off"]
     table = table_block(f"{scene.stem}, {spp} samples a pixel. Relative RMSE over {study.effort.seeds} seeds [95 %, t]; "
-                        "efficiency 1/(mean squared error × time) with a bootstrap interval over the seeds.",
+                        "efficiency 1/(mean squared error on surfaces × time) with a bootstrap interval over the seeds; times are "
+                        "medians of runs in turn, and what else the machine did in them is not in the interval.",
                         head, list(roulette_rows(found)), commands)
     lines = [series(f"roulette {name}", [[bounces + 1, measured[name].median_seconds] for bounces, measured in found.items()])
              for name in ROULETTES]
@@ -184,7 +186,7 @@ def roulette_section(study):
                for bounces, measured in found.items()]
     deepest = found[max(found)]
     headline = (f"Efficiency at depth {max(found)} against no roulette",
-                f"constant {interval(against_off(deepest, 'constant'))}, throughput {interval(against_off(deepest, 'throughput'))}")
+                ", ".join(f"{name} {interval(against_off(deepest, name))}" for name in ("constant", "throughput")))
     return section("roulette", "Russian roulette", blocks, {"depths": figures}, [headline])
 
 
@@ -194,7 +196,7 @@ def ladder_seeds(study, spp):
 
 def ladder_measured(study):
     scene, options = study.scenes.bunny, depth(FULL_DEPTH)
-    reference = study.full_reference(scene)
+    reference = study.depth_reference(scene, FULL_DEPTH)
     return {spp: study.runner.measured(study.seeds(scene, options, spp, ladder_seeds(study, spp)), reference)
             for spp in study.effort.ladder}
 
@@ -202,8 +204,8 @@ def ladder_measured(study):
 def slope_words(where, slope):
     low, estimate, high = slope
     agrees = "holds" if low <= -0.5 <= high else "does not hold"
-    return (f"Over {where} the slope of log error against log samples is {number(estimate)} [{number(low)}, {number(high)}] (least squares, "
-            f"bootstrap over the seeds); the interval {agrees} the {number(-0.5)} of independent samples.")
+    return (f"Over {where} the slope of log error against log samples is {number(estimate)} [{number(low)}, {number(high)}] "
+            f"(least squares, bootstrap over the seeds); the interval {agrees} the {number(-0.5)} of independent samples.")
 
 
 def ladder_rows(found):
@@ -240,5 +242,5 @@ def samples_section(study):
               text_block(slope_words("the whole image", slope) + " " + slope_words("surfaces", surface_slope))]
     figures = {"slope": slope, "surfaceSlope": surface_slope,
                "relativeRmse": {spp: one.relative_rmse for spp, one in found.items()}}
-    headline = ("Slope of log error against log samples", f"{interval(slope)} over the whole image")
+    headline = ("Slope of log error against log samples", f"{interval(slope)} over the whole image, {interval(surface_slope)} on surfaces")
     return section("samples", "Samples a pixel", blocks, figures, [headline])

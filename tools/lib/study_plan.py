@@ -68,7 +68,7 @@ def find_scenes(folder):
 @dataclasses.dataclass(frozen=True)
 class Effort:
     """Sizes of images, samples a pixel, seeds."""
-    size: tuple = (120, 120)
+    size: tuple = (108, 108)
     seeds: int = 16
     normals_spp: int = 16
     timing_size: tuple = (64, 48)
@@ -81,19 +81,22 @@ class Effort:
     roulette_spp: int = 4
     roulette_depths: tuple = (0, 1, 2, 3, 4, FULL_DEPTH)
     ladder: tuple = (1, 2, 4, 8, 16, 64, 1024)
-    ladder_samples: int = 4096  # a pixel in all for each step of the ladder, over the seeds: fewer seeds where many samples
+    ladder_samples: int = 512  # a pixel in all for each step of the ladder: fewer seeds where there are many samples
     tolerances: tuple = (0.2, 0.1, 0.05, 0.02)
+    adaptive_size: tuple = (80, 80)
     adaptive_max: int = 1024
     adaptive_seeds: int = 4
     gallery_spp: int = 32
-    reference_spp: int = 2048
-    long_reference_spp: int = 8192
+    reference_spp: int = 512
+    long_reference_spp: int = 4096
+    adaptive_reference_spp: int = 8192
 
 
 REDUCED = Effort(size=(32, 32), seeds=3, normals_spp=4, timing_size=(16, 12), timing_repeats=1, timing_seconds=0.05,
                  light_spp=4, light_depths=(FULL_DEPTH,), light_samples=(1, 4), bounce_spp=8, roulette_spp=4,
                  roulette_depths=(2, FULL_DEPTH), ladder=(1, 4, 16, 64), ladder_samples=192, tolerances=(0.2,),
-                 adaptive_max=512, adaptive_seeds=2, gallery_spp=4, reference_spp=256, long_reference_spp=1024)
+                 adaptive_size=(32, 32), adaptive_max=512, adaptive_seeds=2, gallery_spp=4, reference_spp=128,
+                 long_reference_spp=1024, adaptive_reference_spp=1024)
 
 
 class Study:
@@ -107,21 +110,18 @@ class Study:
     def request(self, scene, options, spp, **more):
         return Request(scene, tuple(options), spp, more.pop("size", self.effort.size), **more)
 
-    def seeds(self, scene, options, spp, count=None):
-        return [self.request(scene, options, spp, seed=seed) for seed in range(count or self.effort.seeds)]
+    def seeds(self, scene, options, spp, count=None, **more):
+        return [self.request(scene, options, spp, seed=seed, **more) for seed in range(count or self.effort.seeds)]
 
-    def reference(self, scene, options, spp=None):
+    def reference(self, scene, options, spp=None, **more):
         """Independent of every image: a seed of its own. Sobol points, because their variance is less and known."""
         options = [*options, "--pixel-sampler", "sobol"]
-        return self.runner.reference(self.request(scene, options, spp or self.effort.reference_spp, seed=1 << 32))
+        return self.runner.reference(self.request(scene, options, spp or self.effort.reference_spp, seed=1 << 32, **more))
 
-    def full_reference(self, scene):
-        """All bounces. The bunny's serves the error against the number of samples, so it is longer."""
-        spp = self.effort.long_reference_spp if scene == self.scenes.bunny else self.effort.reference_spp
-        return self.reference(scene, depth(FULL_DEPTH), spp)
-
-    def depth_reference(self, scene, bounces):
-        return self.full_reference(scene) if bounces == FULL_DEPTH else self.reference(scene, depth(bounces))
+    def depth_reference(self, scene, bounces, **more):
+        """Those of all bounces and of direct light alone serve the most figures, so they are longer."""
+        spp = self.effort.long_reference_spp if bounces in (1, FULL_DEPTH) else self.effort.reference_spp
+        return self.reference(scene, depth(bounces), spp, **more)
 
     def picture(self, run, label, compared=None, image=None):
         """An image of the page, with its error unless the image shows no light."""
@@ -134,6 +134,7 @@ class Study:
             "spp": run.spp,
             "seconds": run.seconds,
             "relativeRmse": error and error.relative_rmse,
+            "surfaceRmse": compared and compared.surfaces and compared.surfaces.relative_rmse,
             "flagged": bool(error) and error.flagged,
             "referenceShare": error and error.mse and error.reference_variance / error.mse,
             "command": run.request.command(),

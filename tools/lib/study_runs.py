@@ -137,6 +137,10 @@ class Measured:
         return share_of_reference(self.errors)
 
     @property
+    def surface_reference_share(self):
+        return share_of_reference(self.surface_errors)
+
+    @property
     def flagged(self):
         return is_flagged(self.errors)
 

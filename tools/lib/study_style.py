@@ -18,10 +18,10 @@ nav { display: flex; flex-wrap: wrap; gap: .3rem 1rem; margin: 1rem 0; }
 .block { margin: 1.25rem 0 1.75rem; }
 .scroll { overflow-x: auto; border: 1px solid var(--line); border-radius: 8px; background: var(--card); margin: .6rem 0; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: .88rem; }
-th, td { padding: .4rem .7rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; vertical-align: top; overflow-wrap: break-word; }
+th, td { padding: .4rem .55rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; vertical-align: top; overflow-wrap: break-word; }
 th { color: var(--soft); font-weight: 600; background: var(--tint); white-space: normal; vertical-align: bottom; min-width: 3.6rem; }
 tr:last-child td { border-bottom: 0; }
-th:first-child, td:first-child { text-align: left; position: sticky; left: 0; background: var(--card); }
+th:first-child, td:first-child { text-align: left; position: sticky; left: 0; background: var(--card); white-space: normal; min-width: 7rem; }
 th:first-child { background: var(--tint); }
 .summary td { white-space: normal; } .summary td:last-child, .summary th:last-child { text-align: left; }
 .summary td:first-child { position: static; }

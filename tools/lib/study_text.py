@@ -39,14 +39,22 @@ def times(value):
     return "×" + number(value)
 
 
+def flag(flagged, share):
+    """What is put after an error whose square holds too much of the reference's noise: a mark, and the share if there is
+    an error left to have a share of."""
+    if not flagged:
+        return ""
+    return f" ⚑{NO_BREAK}{percent(share, 2)}" if share and share > 0 else " ⚑"
+
+
 def whole_error(measured):
     """Over the whole image; marked where the reference is not clean enough for it."""
-    return interval(measured.relative_rmse, percent) + (" ⚑" if measured.flagged else "")
+    return interval(measured.relative_rmse, percent) + flag(measured.flagged, measured.reference_share)
 
 
 def surface_error(measured):
     """Over the pixels that see no light."""
-    return interval(measured.surface_rmse, percent) + (" ⚑" if measured.surface_flagged else "")
+    return interval(measured.surface_rmse, percent) + flag(measured.surface_flagged, measured.surface_reference_share)
 
 
 def pictures_block(caption, items):
