@@ -114,7 +114,7 @@ struct Film {
     void keepReplicates() { replicates.resize(pixels.size()); }
     /// `PixelReplicates::refine` for every pixel; nothing without replicates. To be called when a pass is complete.
     void refineVariance();
-    /// The least and most samples any pixel holds: they differ only in an interrupted render.
+    /// The least and most samples any pixel holds: they differ in an interrupted render and in an adaptive one.
     [[nodiscard]] std::uint64_t minSampleCount() const;
     [[nodiscard]] std::uint64_t maxSampleCount() const;
 };
