@@ -123,6 +123,7 @@ TEST_F(MethodOptionsTest, BlueNoiseHasSoManySamples) {
 
 TEST_F(MethodOptionsTest, ASampleMapMustNotReplaceTheImage) {
     expectRefused("--sample-map '" + file("a.exr") + "'", {"--sample-map"});
+    expectRefused("--sample-map '" + file("./a.exr") + "'", {"--sample-map"});
     expectRefused("--sample-map '" + file("absent/a.png") + "'", {"absent/a.png"});
     expectRefused("--sample-map '" + file("a.txt") + "'", {"a.txt"});
 }
