@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kLargestFilterRadius = 16.0; // pixels
 constexpr std::uint32_t kLargestLeaf = 8;
+constexpr double kWidestLens = 1e6; // distances of focus: beyond it rays run in the lens, as far as rounding can tell
 
 template <typename Enum> CLI::Option* addChoice(CLI::App& command, const std::string& name, Enum& target) {
     std::vector<std::string> words;
@@ -144,6 +145,8 @@ ThinLens chosenLens(const MethodOptions& options) {
     if (!lens.isPinhole() && !options.focus)
         throwBadInput("--aperture", "needs --focus, the distance at which the image is sharp");
     lens.focus = options.focus.value_or(lens.focus);
+    if (!(lens.aperture / lens.focus < kWidestLens))
+        throwBadInput("--aperture", fmt::format("must be less than {} times --focus", kWidestLens));
     return lens;
 }
 
@@ -152,7 +155,8 @@ ThinLens chosenLens(const MethodOptions& options) {
 void checkDepth(const RenderSettings& settings) {
     if (settings.maxDepth != kUnlimitedDepth) return;
     if (settings.bounces == BounceSelection::last) throwBadInput("--bounces last", "needs --max-depth");
-    if (settings.roulette.kind == Roulette::off)
+    const bool endless = followsLight(settings) && countedBounces(settings).last == kUnlimitedDepth;
+    if (endless && settings.roulette.kind == Roulette::off)
         throwBadInput("--roulette off", "needs --max-depth: no path would end");
 }
 

@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace isolux {
@@ -52,11 +52,16 @@ BackendOptions backendOptions(const RenderCommand& command) {
     return options;
 }
 
+/// Whether two names lead to one place, be there a file or not.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    return std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
+}
+
 void checkSampleMap(const RenderCommand& command) {
     if (command.sampleMap.empty()) return;
     checkImagePath(command.sampleMap);
     for (const std::string& path : command.output.paths)
-        if (path == command.sampleMap) throwBadInput("--sample-map", "it would replace the image");
+        if (sameFile(path, command.sampleMap)) throwBadInput("--sample-map", "it would replace the image");
 }
 
 /// What can be known to be wrong before any work is done.

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kNormalQuantile = 1.96; // two-sided, 95 %
 constexpr std::uint32_t kLeastForError = 16;
+/// An error that is unknown after so many samples, since the image is black or holds NaN, may stay so for ever.
+constexpr std::uint32_t kPatienceForError = 1024;
 
 /// The rule for a pixel alone. NaN satisfies nothing.
 bool satisfied(const PixelStatistics& pixel, const AdaptiveRule& rule) {
@@ -74,6 +76,7 @@ void SamplePlan::judgeError(const Film& film) {
     if (!rule_.relativeError || done_ < kLeastForError) return;
     const double ratio = *rule_.relativeError / estimatedRelativeRmse(film);
     if (ratio > 0.0) errorFraction_ = std::clamp(ratio * ratio, errorFraction_, 1.0);
+    if (std::isnan(ratio) && done_ >= kPatienceForError) errorFraction_ = 1.0;
 }
 
 void SamplePlan::dropFinishedPixels(const Film& film) {

@@ -28,7 +28,8 @@ struct AdaptiveRule {
 struct StoppingRule {
     std::optional<double> seconds; ///< stop after about this time, at least one sample a pixel
     std::optional<AdaptiveRule> adaptive;
-    /// Stop when estimatedRelativeRmse(film) is at most this; judged after each pass from 16 samples on. NaN never is.
+    /// Stop when estimatedRelativeRmse(film) is at most this; judged after each pass from 16 samples on. Also when it
+    /// is still NaN after 1024: no number of samples is sure to tell the error of an image that is black or holds NaN.
     std::optional<double> relativeError;
 };
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -286,12 +287,27 @@ private:
     PackedScene packed_;
 };
 
+struct DeviceLens {
+    float radius = 0.0f;
+    float inverseFocus = 0.0f;
+};
+
+DeviceLens packLens(const DeviceSpace& space, const ThinLens& lens) {
+    if (lens.isPinhole()) return {};
+    constexpr double kLargest = 1e18; // its square must stay in single precision's range
+    const double radius = 0.5 * lens.aperture * space.scale;
+    const double inverseFocus = 1.0 / (lens.focus * space.scale);
+    if (!(std::max({radius, inverseFocus, radius * inverseFocus}) < kLargest))
+        throwBadInput("--aperture", "single precision cannot hold the lens or its focus in a scene of this size; use "
+                                    "--backend reference");
+    return {static_cast<float>(radius), static_cast<float>(inverseFocus)};
+}
+
 /// RenderParameters::methods, lengths in device space.
 glm::vec4 packMethods(const DeviceSpace& space, const RenderSettings& settings) {
     constexpr double kLargest = std::numeric_limits<float>::max(); // stands for "endless" on the device
-    return {static_cast<float>(0.5 * settings.lens.aperture * space.scale),
-            static_cast<float>(1.0 / (settings.lens.focus * space.scale)),
-            static_cast<float>(1.0 - settings.roulette.termination),
+    const DeviceLens lens = packLens(space, settings.lens);
+    return {lens.radius, lens.inverseFocus, static_cast<float>(1.0 - settings.roulette.termination),
             static_cast<float>(std::min(settings.ambientDistance * space.scale, kLargest))};
 }
 

@@ -36,6 +36,8 @@ std::uint32_t kernelIntegrator(Integrator integrator) {
     return shared::kIntegratorPath;
 }
 
+std::uint64_t joinWords(std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; }
+
 Vec3d toDouble(const glm::vec4& v) { return {v.x, v.y, v.z}; }
 
 /// `unit`: a value in the world over the same on the device.
@@ -271,8 +273,8 @@ void PathRenderer::joinChunk(Film& film, const Pass& chunk) const {
                                      record.counts.x, chunk.sampleCount, x, y));
         film.at(x, y).merge(statisticsOf(record, valuePerDevice_));
         film.rays += record.counts.y;
-        film.boxTests += record.tests.x;
-        film.primitiveTests += record.tests.y;
+        film.boxTests += joinWords(record.tests.x, record.tests.z);
+        film.primitiveTests += joinWords(record.tests.y, record.tests.w);
         film.diagnostics.merge({record.counts.w, record.faults.x, record.faults.y, record.faults.z});
         if (options_.aovs == Aovs::on) joinAovs(film.aovsAt(x, y), aovRecords[lane]);
         if (keepsSamples()) {

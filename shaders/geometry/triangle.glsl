@@ -42,7 +42,8 @@ TriangleHit intersectWatertight(vec3 p0, vec3 p1, vec3 p2, vec3 origin, RayTrans
     return hit;
 }
 
-// Rays may slip between triangles that share an edge: each rounds its own barycentric coordinates.
+// Rays may slip between triangles that share an edge: each rounds its own barycentric coordinates. These are given outside
+// as well: where a hit is shaded a driver may contract this arithmetic otherwise and find it just outside.
 TriangleHit intersectMollerTrumbore(vec3 p0, vec3 p1, vec3 p2, Ray ray) {
     vec3 e1 = p1 - p0;
     vec3 e2 = p2 - p0;
@@ -54,8 +55,8 @@ TriangleHit intersectMollerTrumbore(vec3 p0, vec3 p1, vec3 p2, Ray ray) {
     if (determinant != 0.0) {
         float b1 = dot(s1, s) / determinant;
         float b2 = dot(s2, ray.direction) / determinant;
-        if (b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0)
-            hit = TriangleHit(dot(s2, e2) / determinant, 1.0 - b1 - b2, b1);
+        bool inside = b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0;
+        hit = TriangleHit(inside ? dot(s2, e2) / determinant : 0.0, 1.0 - b1 - b2, b1);
     }
     return hit;
 }

@@ -252,7 +252,8 @@ void goOnOrEnd() {
 // What integrators that look at the first hit alone answer; ambient occlusion asks one more ray.
 void shadeFirstHit(Surface surface, vec3 albedo) {
     path.phase = kPhaseEnded;
-    if (kIntegrator == kIntegratorNormals) path.radiance = 0.5 * surface.shading + 0.5;
+    // A unit normal's components may be rounded beyond 1, and a negative sample counts as a fault.
+    if (kIntegrator == kIntegratorNormals) path.radiance = max(0.5 * surface.shading + 0.5, 0.0);
     if (kIntegrator == kIntegratorAlbedo) path.radiance = albedo;
     if (kIntegrator == kIntegratorDepth)
         path.radiance = vec3(dot(surface.position - render.cameraPosition.xyz, render.cameraForward.xyz));
@@ -431,6 +432,13 @@ void startOrResume(uint lane) {
     }
 }
 
+// In 64 bits: without a BVH a batch of long paths tests more primitives than 32 can count.
+void addTests() {
+    uvec2 carry;
+    film.tests.xy = uaddCarry(film.tests.xy, traversalTests, carry);
+    film.tests.zw += carry;
+}
+
 void main() {
     uint lane = gl_GlobalInvocationID.x;
     bool works = lane < parameters.lanes.x && (parameters.batch.w != 0u || paths[lane].progress.x != kPhaseDone);
@@ -443,7 +451,7 @@ void main() {
             advance(budget);
         }
         storePath(lane);
-        if (kTraversalCounts) film.tests.xy += traversalTests;
+        if (kTraversalCounts) addTests();
         films[lane] = film;
         if (path.phase == kPhaseDone) atomicAdd(completion.finishedLanes.x, 1u);
     }

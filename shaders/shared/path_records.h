@@ -29,7 +29,7 @@ struct FilmRecord {
     vec4 squaredDeviation; // rgb, luminance
     uvec4 counts;          // samples, rays, sum of path signatures, samples that were NaN or infinite
     uvec4 faults;          // negative samples, stack overflows, invalid indices; w unused
-    uvec4 tests;           // boxes and primitives that rays were tested against, if counted; z, w unused
+    uvec4 tests;           // boxes and primitives that rays were tested against, if counted; z, w: upper words
 };
 ISOLUX_CHECK_SIZE(FilmRecord, 80);
 

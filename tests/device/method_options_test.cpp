@@ -93,6 +93,8 @@ TEST_F(MethodOptionsTest, NumbersOutOfRangeAreRefused) {
         expectRefused("--focus 1 --aperture=" + std::string(aperture), {"--aperture", aperture});
     for (const char* count : {"0", "-1", "1.5", "many"})
         expectRefused("--light-samples=" + std::string(count), {"--light-samples", count});
+    expectRefused("--aperture 1e300 --focus 1e-300", {"--aperture", "--focus"});
+    expectRefused("--aperture 1e-30 --focus 1e-30", {"--aperture", "single precision", "--backend reference"});
     expectRefused("--light-choice one --light-samples 4000000000", {"--light-samples", "4000000000"});
     for (const char* size : {"0", "9", "-1", "two"})
         expectRefused("--leaf-size=" + std::string(size), {"--leaf-size", size});
@@ -121,8 +123,16 @@ TEST_F(MethodOptionsTest, BlueNoiseHasSoManySamples) {
 
 TEST_F(MethodOptionsTest, ASampleMapMustNotReplaceTheImage) {
     expectRefused("--sample-map '" + file("a.exr") + "'", {"--sample-map"});
+    expectRefused("--sample-map '" + file("./a.exr") + "'", {"--sample-map"});
     expectRefused("--sample-map '" + file("absent/a.png") + "'", {"absent/a.png"});
     expectRefused("--sample-map '" + file("a.txt") + "'", {"a.txt"});
+}
+
+/// Where something else ends paths, none is endless.
+TEST_F(MethodOptionsTest, PathsThatEndNeedNoRoulette) {
+    const std::string quick = "-q --backend reference --size 8x8 --spp 1 --roulette off ";
+    for (const char* ends : {"--integrator direct", "--light direct", "--integrator normals"})
+        EXPECT_EQ(render(quick + ends).exitCode, 0) << ends;
 }
 
 // --- What is warned of ---

@@ -21,6 +21,24 @@ TEST_P(Methods, AgreeWithTheReference) {
     expectAgreement(mixedLightsScene(), settings);
 }
 
+/// Paths that are stopped after every few steps, in whatever phase, go on as if nothing had been.
+TEST_P(Methods, DispatchesChangeNoBit) {
+    RenderSettings settings = imageSettings(11, 9, 18);
+    GetParam().apply(settings);
+    const Scene scene = mixedLightsScene();
+    RenderOptions options;
+    options.signatures = PathSignatures::on;
+    options.counts = TraversalCounts::on;
+    const Film whole = render(scene, settings, options);
+    options.dispatchSeconds = 1e-6;
+    const Film parts = render(scene, settings, options);
+    EXPECT_EQ(differingPixels(whole, parts), 0u);
+    EXPECT_TRUE(whole.replicates == parts.replicates);
+    EXPECT_EQ(whole.rays, parts.rays);
+    EXPECT_EQ(whole.boxTests, parts.boxTests);
+    EXPECT_EQ(whole.primitiveTests, parts.primitiveTests);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Methods, ::testing::ValuesIn(allMethods()),
                          [](const auto& tested) { return tested.param.name; });
 

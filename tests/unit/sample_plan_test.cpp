@@ -111,6 +111,20 @@ TEST(SamplePlan, NanNeverStops) {
     EXPECT_EQ(film.at(2, 0).sampleCount, 16u);
 }
 
+/// 0/0 and NaN: no number of samples tells the error, and there may be no largest one.
+TEST(SamplePlan, AnErrorThatStaysUnknownIsGivenUp) {
+    for (const double value : {0.0, kNan}) {
+        Film film(2, 1);
+        SamplePlan plan = planFor(film, {{}, {}, 10.0}, 4096);
+        renderAll(film, plan, [&](std::size_t, std::uint32_t) { return value; });
+        EXPECT_EQ(film.minSampleCount(), 1024u) << value;
+    }
+    Film film(2, 1); // light that is found late is waited for
+    SamplePlan plan = planFor(film, {{}, {}, 0.1}, 4096);
+    renderAll(film, plan, [](std::size_t, std::uint32_t sample) { return sample == 1000 ? 1.0 : 0.0; });
+    EXPECT_EQ(film.minSampleCount(), 4096u);
+}
+
 TEST(SamplePlan, ATimeLimitEndsIt) {
     Film film(1, 1);
     SamplePlan plan({1e-9, {}, {}}, {0, 100}, FirstPasses::full, allPixels(film));
