@@ -136,7 +136,10 @@ std::optional<Error> writeAll(const RenderCommand& command, const Film& film, co
         first = error;
     }
     try {
-        if (!command.sampleMap.empty()) writeImage(command.sampleMap, sampleMap(film, scene.settings.sampleCount));
+        // Where a limit that was not given is the maximum, the scale ends at what was taken.
+        const std::uint64_t scale =
+            command.samplesGiven || command.rule.adaptive ? scene.settings.sampleCount : film.maxSampleCount();
+        if (!command.sampleMap.empty()) writeImage(command.sampleMap, sampleMap(film, scale));
     } catch (const Error& error) {
         if (!first) first = error;
     }

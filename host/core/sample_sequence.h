@@ -8,7 +8,8 @@
 
 namespace isolux {
 
-/// What a sampler must know of the render. `cellBits`: the least B with 2^B * 16 >= firstSample + sampleCount.
+/// What a sampler must know of the render. `cellBits`: the least B with 2^B * 16 at least the
+/// samples that are planned.
 struct SequencePlan {
     std::uint64_t seed = 0;
     std::uint32_t cellBits = 0;

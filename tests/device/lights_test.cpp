@@ -1,6 +1,7 @@
 // Punctual lights, the environment, orthographic cameras and first hits: the device against the reference, path by
 // path.
 #include "device/paired_fixture.h"
+#include "support/methods.h"
 
 #include "load/gltf.h"
 
@@ -15,24 +16,12 @@ protected:
         for (Material& material : scene.materials) material.emission = Vec3d(0.0);
         return scene;
     }
-
-    [[nodiscard]] static PunctualLight light(PunctualKind kind, const Vec3d& position, const Vec3d& intensity) {
-        PunctualLight light;
-        light.name = "light";
-        light.kind = kind;
-        light.position = position;
-        light.direction = glm::normalize(Vec3d(0.2, -1.0, -0.3));
-        light.intensity = intensity;
-        light.cosInner = std::cos(0.3);
-        light.cosOuter = std::cos(0.7);
-        return light;
-    }
 };
 
 TEST_F(Lights, EachPunctualKind) {
     for (const PunctualKind kind : {PunctualKind::point, PunctualKind::spot, PunctualKind::directional}) {
         Scene scene = darkRoom();
-        scene.punctualLights = {light(kind, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0, 2.0, 1.0))};
+        scene.punctualLights = {punctualLight(kind, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0, 2.0, 1.0))};
         SCOPED_TRACE(static_cast<int>(kind));
         expectAgreement(scene, imageSettings(96, 96, 16));
     }
@@ -51,10 +40,10 @@ TEST_F(Lights, Environment) {
 TEST_F(Lights, AllTogether) {
     Scene scene = loadScene(projectScene("cornell_spheres"));
     scene.environment = {Vec3d(0.2, 0.3, 0.4), EnvironmentExtent::upperHalf};
-    scene.punctualLights = {light(PunctualKind::point, Vec3d(-0.6, 0.9, 0.5), Vec3d(0.5)),
-                            light(PunctualKind::spot, Vec3d(0.5, 1.9, 0.0), Vec3d(4.0, 1.0, 1.0)),
-                            light(PunctualKind::directional, Vec3d(0.0), Vec3d(0.5, 0.5, 0.8)),
-                            light(PunctualKind::point, Vec3d(0.0, 1.0, 0.0), Vec3d(0.0))};
+    scene.punctualLights = {punctualLight(PunctualKind::point, Vec3d(-0.6, 0.9, 0.5), Vec3d(0.5)),
+                            punctualLight(PunctualKind::spot, Vec3d(0.5, 1.9, 0.0), Vec3d(4.0, 1.0, 1.0)),
+                            punctualLight(PunctualKind::directional, Vec3d(0.0), Vec3d(0.5, 0.5, 0.8)),
+                            punctualLight(PunctualKind::point, Vec3d(0.0, 1.0, 0.0), Vec3d(0.0))};
     expectAgreement(scene, imageSettings(96, 96, 16));
 }
 
@@ -91,7 +80,7 @@ TEST_F(Lights, OrthographicCamera) {
 TEST_F(Lights, InTheirSurfaces) {
     for (const Vec3d& position : {Vec3d(0.3, 2.0, 0.2), Vec3d(-1.0, 1.0, 0.0)}) {
         Scene scene = darkRoom();
-        scene.punctualLights = {light(PunctualKind::point, position, Vec3d(2.0))};
+        scene.punctualLights = {punctualLight(PunctualKind::point, position, Vec3d(2.0))};
         SCOPED_TRACE(testing::Message() << position.x << ' ' << position.y << ' ' << position.z);
         // Blocked by its own wall it would leave the room black, which is no agreement either.
         expectAgreement(scene, imageSettings(64, 64, 16));
@@ -101,7 +90,7 @@ TEST_F(Lights, InTheirSurfaces) {
 /// A point light's fall-off is in the world's unit, whatever the device's; a power of two must not change a bit.
 TEST_F(Lights, FallOffFollowsTheWorldsScale) {
     Scene scene = darkRoom();
-    scene.punctualLights = {light(PunctualKind::point, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0))};
+    scene.punctualLights = {punctualLight(PunctualKind::point, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0))};
     const RenderSettings settings = imageSettings(48, 48, 8);
     const Film film = render(scene, settings);
     const double scale = 1024.0;
@@ -118,8 +107,8 @@ TEST_F(Lights, FallOffFollowsTheWorldsScale) {
 
 TEST_F(Lights, LeavingKindsOutChangesNothing) {
     Scene punctual = darkRoom();
-    punctual.punctualLights = {light(PunctualKind::spot, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0)),
-                               light(PunctualKind::point, Vec3d(-0.3, 1.0, 0.2), Vec3d(1.0))};
+    punctual.punctualLights = {punctualLight(PunctualKind::spot, Vec3d(0.3, 1.7, 0.2), Vec3d(3.0)),
+                               punctualLight(PunctualKind::point, Vec3d(-0.3, 1.0, 0.2), Vec3d(1.0))};
     Scene environment = darkRoom();
     environment.environment.radiance = Vec3d(1.0);
     for (const Scene& scene : {punctual, environment}) {

@@ -140,17 +140,22 @@ TEST_F(Paired, AdaptivePixelsStopAlike) {
     std::size_t different = 0;
     for (std::size_t i = 0; i < film.pixels.size(); ++i)
         if (film.pixels[i].sampleCount != expected.pixels[i].sampleCount) ++different;
-    EXPECT_LT(static_cast<double>(different), 0.01 * static_cast<double>(film.pixels.size()));
+    // One pixel in a thousand may take another branch, and each stands in nine neighbourhoods.
+    EXPECT_LE(static_cast<double>(different), 9.0 * (1.0 - kAgreement) * static_cast<double>(film.pixels.size()));
     EXPECT_EQ(film.minSampleCount(), 64u);
     EXPECT_GT(film.maxSampleCount(), film.minSampleCount());
-    std::uint64_t rays = film.rays;
+    const std::uint64_t rays = film.rays;
     for (const PixelStatistics& pixel : film.pixels) EXPECT_EQ((pixel.sampleCount - 64) % 32, 0u);
-    const Film uniform = render(scene, settings);
-    EXPECT_LT(rays, uniform.rays) << "pixels that have stopped still cost";
-    for (std::size_t i = 0; i < film.pixels.size(); ++i)
-        if (film.pixels[i].sampleCount == settings.sampleCount) {
-            ASSERT_TRUE(film.pixels[i] == uniform.pixels[i]);
-        }
+    EXPECT_LT(rays, render(scene, settings).rays) << "pixels that have stopped still cost";
+    for (const std::uint32_t samples : {64u, 96u, 256u}) {
+        RenderSettings shorter = settings;
+        shorter.sampleCount = samples;
+        const Film uniform = render(scene, shorter);
+        for (std::size_t i = 0; i < film.pixels.size(); ++i)
+            if (film.pixels[i].sampleCount == samples) {
+                ASSERT_TRUE(film.pixels[i] == uniform.pixels[i]);
+            }
+    }
 }
 
 TEST_F(Paired, AnErrorAskedForIsReached) {

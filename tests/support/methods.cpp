@@ -102,7 +102,9 @@ void addCamera(std::vector<Method>& methods) {
                            }});
 }
 
-PunctualLight light(PunctualKind kind, const Vec3d& position, const Vec3d& intensity) {
+} // namespace
+
+PunctualLight punctualLight(PunctualKind kind, const Vec3d& position, const Vec3d& intensity) {
     PunctualLight light;
     light.name = "light";
     light.kind = kind;
@@ -113,8 +115,6 @@ PunctualLight light(PunctualKind kind, const Vec3d& position, const Vec3d& inten
     light.cosOuter = std::cos(0.7);
     return light;
 }
-
-} // namespace
 
 std::vector<Method> allMethods() {
     std::vector<Method> methods;
@@ -132,10 +132,10 @@ Scene mixedLightsScene() {
     Scene scene = loadScene(projectScene("cornell_spheres"));
     // From everywhere: at the edge of half a sky rounding decides whether a direction meets it, as it once did here.
     scene.environment = {Vec3d(0.2, 0.3, 0.4), EnvironmentExtent::sphere};
-    scene.punctualLights = {light(PunctualKind::point, Vec3d(-0.6, 0.9, 0.5), Vec3d(0.5)),
-                            light(PunctualKind::spot, Vec3d(0.5, 1.9, 0.0), Vec3d(4.0, 1.0, 1.0)),
-                            light(PunctualKind::directional, Vec3d(0.0), Vec3d(0.5, 0.5, 0.8)),
-                            light(PunctualKind::point, Vec3d(0.0, 1.0, 0.0), Vec3d(0.0))};
+    scene.punctualLights = {punctualLight(PunctualKind::point, Vec3d(-0.6, 0.9, 0.5), Vec3d(0.5)),
+                            punctualLight(PunctualKind::spot, Vec3d(0.5, 1.9, 0.0), Vec3d(4.0, 1.0, 1.0)),
+                            punctualLight(PunctualKind::directional, Vec3d(0.0), Vec3d(0.5, 0.5, 0.8)),
+                            punctualLight(PunctualKind::point, Vec3d(0.0, 1.0, 0.0), Vec3d(0.0))};
     return scene;
 }
 

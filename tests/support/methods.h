@@ -24,6 +24,9 @@ inline void PrintTo(const Method& method, std::ostream* stream) { *stream << met
 
 [[nodiscard]] std::vector<Method> allMethods();
 
+/// A light that shines downwards, a spot with a wide cone.
+[[nodiscard]] PunctualLight punctualLight(PunctualKind kind, const Vec3d& position, const Vec3d& intensity);
+
 /// The Cornell spheres with every kind of light: a lamp, a point, a spot and a directional light, an environment.
 [[nodiscard]] Scene mixedLightsScene();
 
