@@ -116,8 +116,9 @@ def adaptive_words(figures):
     sooner = sum(one["timeForErrorOfUniform"][2] < 1 for one in figures)
     later = sum(one["timeForErrorOfUniform"][0] > 1 for one in figures)
     largest = max(abs(one["bias"][1]) for one in figures)
-    return (f"Of the pixels that stopped before the maximum, {percent(min(shares))} to {percent(max(shares))} are within the "
-            f"tolerance. The mean lies off the reference's by more than its interval in {biased} of {len(figures)} cases, at "
+    kept = (f"Of the pixels that stopped before the maximum, {percent(min(shares))} to {percent(max(shares))} are within the "
+            "tolerance." if shares else "No pixel stopped before the maximum.")
+    return (f"{kept} The mean lies off the reference's by more than its interval in {biased} of {len(figures)} cases, at "
             f"most by {percent(largest)}. Adaptive sampling reaches uniform sampling's error on surfaces sooner in {sooner} of "
             f"{len(figures)} cases and later in {later}.")
 

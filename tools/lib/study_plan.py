@@ -88,8 +88,8 @@ class Effort:
     adaptive_seeds: int = 4
     gallery_spp: int = 32
     reference_spp: int = 512
-    long_reference_spp: int = 4096
-    adaptive_reference_spp: int = 8192
+    long_reference_spp: int = 2048
+    adaptive_reference_spp: int = 4096
 
 
 REDUCED = Effort(size=(32, 32), seeds=3, normals_spp=4, timing_size=(16, 12), timing_repeats=1, timing_seconds=0.05,
