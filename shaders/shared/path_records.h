@@ -16,10 +16,10 @@ struct PathRecord {
     vec4 shadowRadiance;    // what arrives if nothing is in between; w unused
     vec4 pointFacing;       // the point whose lights are being sampled, if there are several samples: normals,
     vec4 pointShading;
-    vec4 pointReflected;    // throughput times reflectance
-    uvec4 progress;         // phase, sample within the batch, nearest primitive found so far, entries on the stack
-    uvec4 bounce;           // bounces so far, ending, path signature, light samples still to be taken
-    uvec4 ignored;          // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
+    vec4 pointReflected; // throughput times reflectance
+    uvec4 progress;      // phase, sample within the batch, nearest primitive found so far, entries on the stack
+    uvec4 bounce;        // bounces so far, ending, path signature, light samples still to be taken
+    uvec4 ignored;       // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
 };
 ISOLUX_CHECK_SIZE(PathRecord, 192);
 
@@ -51,21 +51,22 @@ ISOLUX_CHECK_SIZE(SampleRecord, 256);
 
 // Constant over a render.
 struct RenderParameters {
-    vec4 cameraPosition;    // device space; w: 1 for an orthographic camera, else 0
-    vec4 cameraRight;       // to the image's right edge: for a perspective camera at unit distance
-    vec4 cameraUp;          // to its top edge
-    vec4 cameraForward;     // unit
-    vec4 lensRight;         // unit, as cameraRight and cameraUp are not
+    vec4 cameraPosition; // device space; w: 1 for an orthographic camera, else 0
+    vec4 cameraRight;    // to the image's right edge: for a perspective camera at unit distance
+    vec4 cameraUp;       // to its top edge
+    vec4 cameraForward;  // unit
+    vec4 lensRight;      // unit, as cameraRight and cameraUp are not
     vec4 lensUp;
     vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it
     vec4 environmentLimits; // x: it emits from directions with y above this alone; y, z, w unused
     uvec4 imageSeed;        // width, height, seed low, seed high
-    vec4 methods;           // radius of the lens, 1/focus distance, roulette's constant survival, reach of ambient occluders
-    uvec4 depthLights;      // last bounce, roulette start, bits of the alias table, number of lights
-    uvec4 lightSamples;     // samples a shading point; with kSpecAllLights: of each area light, area lights, punctual lights
-    uvec4 tableOffsets;     // first word of materials, lights, light bins, filter quantiles in the tables buffer
-    uvec4 sceneCounts;      // nodes, primitives, materials; w unused
-    uvec4 sampling;         // x: first bounce that counts, y: cell bits of the sampler; z, w unused
+    vec4 methods;      // radius of the lens, 1/focus distance, roulette's constant survival, reach of ambient occluders
+    uvec4 depthLights; // last bounce, roulette start, bits of the alias table, number of lights
+    uvec4
+        lightSamples; // samples a shading point; with kSpecAllLights: of each area light, area lights, punctual lights
+    uvec4 tableOffsets; // first word of materials, lights, light bins, filter quantiles in the tables buffer
+    uvec4 sceneCounts;  // nodes, primitives, materials; w unused
+    uvec4 sampling;     // x: first bounce that counts, y: cell bits of the sampler; z, w unused
 };
 ISOLUX_CHECK_SIZE(RenderParameters, 240);
 
