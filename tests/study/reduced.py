@@ -85,6 +85,13 @@ class ReducedStudy(unittest.TestCase):
         self.assertGreater(found["values"], 1000)
         self.assertEqual(found["beyond"], 0, found)
 
+    def test_constant_roulette_scatters_where_the_albedo_is_high(self):
+        """Exactly, a sample's variance would grow by 1.28 a bounce with P = 0.5; with 0.3 its growth ends."""
+        scatter = self.figures("roulette")["furnaceScatter"]
+        self.assertGreater(scatter["constant 0.5"][-1], 1.5 * scatter["constant 0.3"][-1])
+        self.assertGreater(scatter["constant 0.5"][-1], 4 * scatter["constant 0.5"][0])
+        self.assertLess(scatter["off"][-1], scatter["off"][0])
+
     def test_roulette_ends_paths(self):
         deepest = self.figures("roulette")["depths"][-1]["methods"]
         self.assertLess(deepest["constant"]["raysPerSample"], deepest["off"]["raysPerSample"])

@@ -3,7 +3,7 @@
 import math
 
 from study_exr import read_channels
-from study_plan import FULL_DEPTH, depth, largest_albedo
+from study_plan import FULL_DEPTH, FURNACE, FURNACE_ALBEDO, depth, largest_albedo
 from study_runs import root_mean_square
 from study_statistics import inefficiency_ratio, log_log_slope
 from study_text import (chart_block, error_point, interval, number, percent, pictures_block, section, seconds, series,
@@ -163,6 +163,37 @@ def roulette_pictures(found):
     yield from ((f"{name}, depth {deepest}", found[deepest][name]) for name in ("off", "throughput"))
 
 
+FURNACE_SIZE = (32, 32)
+FURNACE_ROULETTES = {
+    "off": NO_ROULETTE,
+    "constant 0.3": ["--roulette", "constant:0.3", "--roulette-start", "2"],
+    "constant 0.5": ["--roulette", "constant:0.5", "--roulette-start", "2"],
+    "throughput": ["--roulette", "throughput", "--roulette-start", "2"],
+}
+
+
+def furnace_scatter(study, bounces, options):
+    """The standard deviation of one sample over the mean, in blue."""
+    run = study.runner.render(study.request(FURNACE, [*depth(bounces), *options], study.effort.furnace_spp, size=FURNACE_SIZE))
+    values = read_channels(run.exr, ["B", "variance.B"])[2]
+    return math.sqrt(math.fsum(values["variance.B"]) * len(values["B"])) / math.fsum(values["B"])
+
+
+def furnace_blocks(study):
+    """Where constant roulette has infinite variance: its scatter grows with every bounce that is allowed."""
+    scatter = {name: [furnace_scatter(study, bounces, options) for bounces in study.effort.furnace_depths]
+               for name, options in FURNACE_ROULETTES.items()}
+    rows = [[name, *(number(value) for value in values)] for name, values in scatter.items()]
+    factors = ", ".join(f"P = {p}: {number(FURNACE_ALBEDO**2 / (1 - p))}" for p in (0.3, 0.5))
+    commands = [f"isolux render {FURNACE.name} -o image.exr --size 32x32 --spp {study.effort.furnace_spp} --max-depth D "
+                + " ".join(options) for options in FURNACE_ROULETTES.values()]
+    caption = (f"A closed furnace of albedo {FURNACE_ALBEDO}: the scatter of one sample relative to the mean, by maximum depth. "
+               f"a²/(1 − P) is, for {factors}. Above 1 every bounce adds more than the one before; with no limit of depth "
+               "the variance is infinite, and what so many samples show of it is an underestimate.")
+    head = ["roulette", *(f"depth {bounces}" for bounces in study.effort.furnace_depths)]
+    return [table_block(caption, head, rows, commands)], scatter
+
+
 def roulette_section(study):
     scene, spp = study.scenes.bunny, study.effort.roulette_spp
     found = {bounces: roulette_measured(study, bounces) for bounces in study.effort.roulette_depths}
@@ -178,8 +209,9 @@ def roulette_section(study):
              for name in ROULETTES]
     chart = chart_block("Time against the most path segments (maximum depth + 1): without roulette it goes on growing until "
                         "paths leave the scene by themselves.", "path segments at most", "seconds", lines, commands)
+    furnace, scatter = furnace_blocks(study)
     blocks = [pictures_block(f"{scene.stem}, {spp} samples a pixel", study.pictures(dict(roulette_pictures(found)))), table,
-              text_block(roulette_words(found)), text_block(variance_words(scene)), chart]
+              text_block(roulette_words(found)), text_block(variance_words(scene)), *furnace, chart]
     figures = [{"bounces": bounces, "methods": {name: {
         "seconds": one.median_seconds, "surfaceRmse": one.surface_rmse, "raysPerSample": rays_per_sample(one),
         "efficiencyAgainstOff": against_off(measured, name)} for name, one in measured.items()}}
@@ -187,7 +219,7 @@ def roulette_section(study):
     deepest = found[max(found)]
     headline = (f"Efficiency at depth {max(found)} against no roulette",
                 ", ".join(f"{name} {interval(against_off(deepest, name))}" for name in ("constant", "throughput")))
-    return section("roulette", "Russian roulette", blocks, {"depths": figures}, [headline])
+    return section("roulette", "Russian roulette", blocks, {"depths": figures, "furnaceScatter": scatter}, [headline])
 
 
 def ladder_seeds(study, spp):

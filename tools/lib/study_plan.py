@@ -6,6 +6,10 @@ import pathlib
 from gltf_facts import facts, read_document
 from study_runs import Request
 
+# A closed box of albedos 0.2, 0.5 and 0.8 in red, green and blue, all of it emitting: paths go on for ever.
+FURNACE = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "furnace" / "furnace.gltf"
+FURNACE_ALBEDO = 0.8
+
 # More bounces than this carry no light that an image here could show; the report's own largest depth.
 FULL_DEPTH = 100
 
@@ -80,6 +84,8 @@ class Effort:
     bounce_spp: int = 16
     roulette_spp: int = 4
     roulette_depths: tuple = (0, 1, 2, 3, 4, FULL_DEPTH)
+    furnace_depths: tuple = (1, 2, 4, 8, 12, 16)
+    furnace_spp: int = 512
     ladder: tuple = (1, 2, 4, 8, 16, 64, 1024)
     ladder_samples: int = 512  # a pixel in all for each step of the ladder: fewer seeds where there are many samples
     tolerances: tuple = (0.2, 0.1, 0.05, 0.02)
@@ -94,7 +100,7 @@ class Effort:
 
 REDUCED = Effort(size=(32, 32), seeds=3, normals_spp=4, timing_size=(16, 12), timing_repeats=1, timing_seconds=0.05,
                  light_spp=4, light_depths=(FULL_DEPTH,), light_samples=(1, 4), bounce_spp=8, roulette_spp=4,
-                 roulette_depths=(2, FULL_DEPTH), ladder=(1, 4, 16, 64), ladder_samples=192, tolerances=(0.2,),
+                 roulette_depths=(2, FULL_DEPTH), furnace_depths=(2, 8), furnace_spp=128, ladder=(1, 4, 16, 64), ladder_samples=192, tolerances=(0.2,),
                  adaptive_size=(32, 32), adaptive_max=512, adaptive_seeds=2, gallery_spp=4, reference_spp=128,
                  long_reference_spp=1024, adaptive_reference_spp=1024)
 
