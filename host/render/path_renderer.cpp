@@ -26,7 +26,7 @@ constexpr std::uint32_t kHardwareLanes = 1u << 18;
 /// kIntegrator... of the kernel, for which direct light is a matter of depth.
 std::uint32_t kernelIntegrator(Integrator integrator) {
     switch (integrator) {
-    case Integrator::path: return shared::kIntegratorPath;
+    case Integrator::path:
     case Integrator::direct: return shared::kIntegratorPath;
     case Integrator::normals: return shared::kIntegratorNormals;
     case Integrator::albedo: return shared::kIntegratorAlbedo;

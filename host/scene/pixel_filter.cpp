@@ -32,7 +32,7 @@ double defaultRadius(PixelFilter filter) {
     switch (filter) {
     case PixelFilter::box: return 0.5;
     case PixelFilter::triangle: return 1.0;
-    case PixelFilter::gaussian: return 1.5;
+    case PixelFilter::gaussian:
     case PixelFilter::blackmanHarris: return 1.5;
     }
     return 0.5;
