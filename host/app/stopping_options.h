@@ -19,7 +19,7 @@ struct StoppingOptions {
 
 void addStoppingOptions(CLI::App& command, StoppingOptions& options);
 
-/// Throws Error (bad input) if options do not fit each other, and warns if adaptive sampling has no effect.
+/// Throws Error (bad input) if options do not fit each other.
 [[nodiscard]] StoppingRule stoppingRule(const StoppingOptions& options);
 
 /// The samples a pixel where --spp is not given: 4096 at most if they are adaptive; as many as the time or the error

@@ -10,13 +10,11 @@
 #include "core/stopwatch.h"
 #include "reference/reference.h"
 #include "report/comparison.h"
-#include "report/format.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <memory>
 
 namespace isolux {
@@ -47,14 +45,7 @@ struct Outcome {
     bool passed = false;
 };
 
-double perRay(std::uint64_t tests, const Film& film) {
-    return static_cast<double>(tests) / static_cast<double>(std::max(film.rays, std::uint64_t{1}));
-}
-
-std::string testsText(const Film& film) {
-    return fmt::format("{} boxes and {} primitives", formatNumber(perRay(film.boxTests, film)),
-                       formatNumber(perRay(film.primitiveTests, film)));
-}
+std::string testsText(const Film& film) { return formatTestsPerRay(film.boxTests, film.primitiveTests, film.rays); }
 
 bool passes(const Outcome& outcome, const VerifyCommand& command) {
     const PairedDifferences& d = outcome.differences;

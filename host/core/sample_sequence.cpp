@@ -7,8 +7,9 @@
 namespace isolux {
 namespace {
 
-constexpr std::uint32_t kReplicateMask = 15;
-constexpr std::uint32_t kReplicateBits = 4;
+constexpr std::uint32_t kReplicateMask = kReplicates - 1;
+constexpr std::uint32_t kReplicateBits = std::bit_width(kReplicateMask);
+static_assert(std::has_single_bit(kReplicates));
 constexpr std::uint32_t kSecondKeys = 0x80000000u;
 constexpr std::uint64_t kKeySeed = std::uint64_t{0x5EED5E71u} << 32;
 constexpr std::uint32_t kAllPixels = 0xFFFFFFFFu;

@@ -8,6 +8,10 @@
 
 namespace isolux {
 
+/// Samples are dealt to so many independently randomised replicates in turn: sample s belongs to replicate s mod
+/// kReplicates. Samplers whose samples depend on each other take their variance from the replicates' means.
+inline constexpr std::uint32_t kReplicates = 16;
+
 /// What a sampler must know of the render. `cellBits`: the least B with 2^B * 16 at least the
 /// samples that are planned.
 struct SequencePlan {

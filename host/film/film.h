@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/math.h"
+#include "core/sample_sequence.h"
 
 #include <array>
 #include <cstdint>
@@ -76,7 +77,7 @@ struct Diagnostics {
 /// The sums of samples that were dealt to independently randomised replicates in turn. Samples of one replicate depend
 /// on each other, so their scatter says nothing about the error of their mean; that of the replicates' means does.
 struct PixelReplicates {
-    static constexpr std::uint32_t kCount = 16;
+    static constexpr std::uint32_t kCount = kReplicates;
     std::array<Vec3d, kCount> sum{};
     std::array<std::uint32_t, kCount> sampleCount{};
 

@@ -16,7 +16,6 @@ namespace isolux {
 namespace {
 
 static_assert(shared::kBatchSamples == SamplePlan::kLargestPass && shared::kFilterCells == kFilterCells);
-static_assert(kReplicates == PixelReplicates::kCount);
 
 constexpr std::uint32_t kWorkgroupSize = 64;
 constexpr std::uint32_t kFirstBudget = 256;
@@ -77,8 +76,7 @@ template <typename Record> std::span<const Record> recordsIn(const Buffer& buffe
 
 PathRenderer::PathRenderer(const Device& device, const Scene& scene, const RenderSettings& settings,
                            const RenderOptions& options)
-    : device_(device), options_(options), settings_(settings), samples_{settings.firstSample, settings.sampleCount},
-      runner_(device) {
+    : device_(device), options_(options), settings_(settings), runner_(device) {
     const auto announce = [&](std::string_view name) {
         if (options.stage) options.stage(name);
     };
@@ -109,7 +107,7 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     statistics_.compileSeconds = compiling.seconds();
 }
 
-Tile PathRenderer::wholeImage() const { return {0, 0, parameters_.imageSeed.x, parameters_.imageSeed.y}; }
+Tile PathRenderer::wholeImage() const { return {0, 0, settings_.width, settings_.height}; }
 
 std::uint32_t PathRenderer::laneLimit() const {
     const std::uint32_t wanted =
@@ -152,6 +150,11 @@ void PathRenderer::createOptionalBuffers(VkDeviceSize lanes) {
 void PathRenderer::writeParameters() {
     std::memcpy(parameterBuffer_->mapped().data(), &parameters_, sizeof(parameters_));
     parameterBuffer_->flush();
+}
+
+void PathRenderer::setSamples(const SampleRange& samples) {
+    settings_.firstSample = samples.first;
+    settings_.sampleCount = samples.count;
 }
 
 void PathRenderer::setMaxDepth(std::uint32_t maxDepth) {
@@ -209,7 +212,8 @@ double PathRenderer::dispatch(const Pass& chunk, std::uint32_t budget, Lanes lan
 void PathRenderer::render(Film& film, const Tile& region, const ProgressCallback& progress) {
     if (options_.aovs == Aovs::on) film.keepAovs();
     if (keepsSamples()) film.keepReplicates();
-    SamplePlan plan(options_.stopping, samples_, FirstPasses::full, orderPixels(region, maxLanes_));
+    SamplePlan plan(options_.stopping, {settings_.firstSample, settings_.sampleCount}, FirstPasses::full,
+                    orderPixels(region, maxLanes_));
     while (const std::optional<Pass> pass = plan.next(film)) {
         const auto passProgress = [&](double part) { return progress(plan.fraction(part)); };
         if (renderPass(film, *pass, passProgress) == Continue::no) return;

@@ -58,7 +58,7 @@ public:
 
     /// Renders other samples or a lesser depth from now on; resolution and camera stay, and so does what the kernel was
     /// specialised to.
-    void setSamples(const SampleRange& samples) { samples_ = samples; }
+    void setSamples(const SampleRange& samples);
     void setMaxDepth(std::uint32_t maxDepth);
 
     [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
@@ -82,7 +82,6 @@ private:
     const Device& device_;
     RenderOptions options_;
     RenderSettings settings_;
-    SampleRange samples_;
     CommandRunner runner_;
     RenderStatistics statistics_;
     shared::RenderParameters parameters_{};

@@ -99,11 +99,6 @@ std::string errorTargetText(const RunReport& report) {
                        report.errorTargetReached() ? "reached" : "not reached", report.samplesPerPixel);
 }
 
-std::string testsText(const RunReport& report) {
-    return fmt::format("{} boxes and {} primitives a ray", formatNumber(ratio(report.boxTests, report.rays)),
-                       formatNumber(ratio(report.primitiveTests, report.rays)));
-}
-
 std::string deviceText(const RunReport& report) {
     const std::string driver =
         report.driverName.empty() ? "" : fmt::format(", {} {}", report.driverName, report.driverVersion);
@@ -226,6 +221,11 @@ AdaptiveSummary summariseAdaptive(const Film& film, const AdaptiveRule& rule, st
         rule, maximum, film.minSampleCount(), film.maxSampleCount(), ratio(samples, pixels), ratio(stopped, pixels)};
 }
 
+std::string formatTestsPerRay(std::uint64_t boxes, std::uint64_t primitives, std::uint64_t rays) {
+    return fmt::format("{} boxes and {} primitives", formatNumber(ratio(boxes, rays)),
+                       formatNumber(ratio(primitives, rays)));
+}
+
 void describeFilm(RunReport& report, const Film& film) {
     report.width = film.width;
     report.height = film.height;
@@ -249,7 +249,8 @@ std::string toText(const RunReport& report) {
     std::string text = formatLine("scene", sceneText(report)) + requestText(report) +
                        formatLine("device", deviceText(report)) + formatLine("start-up", startUpText(report.timings)) +
                        formatLine("render", renderText(report)) + formatLine("speed", speedText(report));
-    if (report.boxTests + report.primitiveTests > 0) text += formatLine("tests", testsText(report));
+    if (report.boxTests + report.primitiveTests > 0)
+        text += formatLine("tests", formatTestsPerRay(report.boxTests, report.primitiveTests, report.rays) + " a ray");
     if (report.adaptive) text += adaptiveText(*report.adaptive);
     if (report.errorTarget) text += formatLine("until error", errorTargetText(report));
     text += formatLine("image", qualityText(report.quality)) +

@@ -99,6 +99,9 @@ struct RunReport {
     [[nodiscard]] bool errorTargetReached() const; ///< false while the error is unknown
 };
 
+/// "9.4 boxes and 0.84 primitives", of each ray.
+[[nodiscard]] std::string formatTestsPerRay(std::uint64_t boxes, std::uint64_t primitives, std::uint64_t rays);
+
 /// Sets what the film itself knows: size, sample counts, rays, tests, diagnostics and quality.
 void describeFilm(RunReport& report, const Film& film);
 

@@ -134,10 +134,7 @@ struct BounceRange {
     return cellBitsFor(settings.plannedSamples == 0 ? samples : settings.plannedSamples);
 }
 
-/// Samples are dealt to so many independently randomised replicates in turn: sample s belongs to replicate s mod
-/// kReplicates. Samplers whose samples depend on each other take their variance from the replicates' means.
-inline constexpr std::uint32_t kReplicates = 16;
-
+/// Whether samples depend on each other, so that variance comes from the means of kReplicates replicates.
 [[nodiscard]] inline bool usesReplicates(PixelSampler sampler) { return sampler != PixelSampler::independent; }
 
 } // namespace isolux

@@ -38,12 +38,8 @@ TEST_F(Lights, Environment) {
 
 /// Every kind in one table, and a directional light from outside the room.
 TEST_F(Lights, AllTogether) {
-    Scene scene = loadScene(projectScene("cornell_spheres"));
-    scene.environment = {Vec3d(0.2, 0.3, 0.4), EnvironmentExtent::upperHalf};
-    scene.punctualLights = {punctualLight(PunctualKind::point, Vec3d(-0.6, 0.9, 0.5), Vec3d(0.5)),
-                            punctualLight(PunctualKind::spot, Vec3d(0.5, 1.9, 0.0), Vec3d(4.0, 1.0, 1.0)),
-                            punctualLight(PunctualKind::directional, Vec3d(0.0), Vec3d(0.5, 0.5, 0.8)),
-                            punctualLight(PunctualKind::point, Vec3d(0.0, 1.0, 0.0), Vec3d(0.0))};
+    Scene scene = mixedLightsScene();
+    scene.environment.extent = EnvironmentExtent::upperHalf;
     expectAgreement(scene, imageSettings(96, 96, 16));
 }
 

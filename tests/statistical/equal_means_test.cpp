@@ -1,5 +1,6 @@
 // Methods that must not change the expectation of an image do not: one table, one error budget.
 #include "reference/reference.h"
+#include "report/run_report.h"
 #include "report/statistics.h"
 #include "support/methods.h"
 #include "support/render.h"
@@ -24,12 +25,6 @@ RenderSettings tinyImage() {
     return settings;
 }
 
-double meanLuminance(const Film& film) {
-    double sum = 0.0;
-    for (const PixelStatistics& pixel : film.pixels) sum += luminance(pixel.mean);
-    return sum / static_cast<double>(film.pixels.size());
-}
-
 /// Renders share no random number with those of another method: each has seeds of its own.
 class Seeds {
 public:
@@ -37,7 +32,7 @@ public:
         std::vector<double> result;
         for (int i = 0; i < kSeeds; ++i) {
             settings.seed = next_++;
-            result.push_back(meanLuminance(render(settings)));
+            result.push_back(imageQuality(render(settings)).meanLuminance.estimate);
         }
         return result;
     }
