@@ -2,7 +2,7 @@
 #include "film/image.h"
 
 #include "core/error.h"
-#include "film/srgb.h"
+#include "core/srgb.h"
 
 #include <OpenImageIO/imageio.h>
 

@@ -1,7 +1,7 @@
 #include "film/tonemap.h"
 
 #include "core/error.h"
-#include "film/srgb.h"
+#include "core/srgb.h"
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include "scene/lights.h"
 
 #include <algorithm>
+#include <array>
 
 namespace isolux {
 namespace {
@@ -19,7 +20,34 @@ bool hasKind(const LightTable& table, LightKind kind) {
                        [&](const Light& light) { return light.kind == kind; });
 }
 
+constexpr auto kNamed = std::to_array<NamedFeature>({
+    {"spheres", &SceneFeatures::spheres},
+    {"smooth-normals", &SceneFeatures::smoothNormals},
+    {"area-lights", &SceneFeatures::areaLights},
+    {"punctual-lights", &SceneFeatures::punctualLights},
+    {"environment", &SceneFeatures::environment},
+    {"environment-map", &SceneFeatures::environmentMap},
+    {"specular", &SceneFeatures::specular},
+    {"rough-specular", &SceneFeatures::roughSpecular},
+    {"glass", &SceneFeatures::glass},
+    {"rough-glass", &SceneFeatures::roughGlass},
+    {"solids", &SceneFeatures::solids},
+    {"absorption", &SceneFeatures::absorption},
+    {"base-color-maps", &SceneFeatures::baseColorMaps},
+    {"metallic-roughness-maps", &SceneFeatures::metallicRoughnessMaps},
+    {"normal-maps", &SceneFeatures::normalMaps},
+    {"emission-maps", &SceneFeatures::emissionMaps},
+    {"transmission-maps", &SceneFeatures::transmissionMaps},
+    {"specular-maps", &SceneFeatures::specularMaps},
+    {"vertex-colors", &SceneFeatures::vertexColors},
+    {"alpha-mask", &SceneFeatures::alphaMask},
+    {"alpha-blend", &SceneFeatures::alphaBlend},
+    {"unlit", &SceneFeatures::unlit},
+});
+
 } // namespace
+
+std::span<const NamedFeature> namedFeatures() { return kNamed; }
 
 SceneFeatures findFeatures(const Scene& scene, const RenderSettings& settings) {
     SceneFeatures features;
@@ -36,6 +64,15 @@ SceneFeatures findFeatures(const Scene& scene, const RenderSettings& settings) {
     features.environment =
         followsLight(settings) && scene.environment.emits(); // seen, even if there is nothing that it could light
     return features;
+}
+
+std::vector<FeatureNote> explainFeatures(const Scene& scene, const RenderSettings& settings) {
+    const SceneFeatures features = findFeatures(scene, settings);
+    std::vector<FeatureNote> notes;
+    for (const NamedFeature& named : kNamed)
+        notes.push_back({std::string(named.name), features.*named.flag,
+                         features.*named.flag ? "the scene has it" : "the scene has none"});
+    return notes;
 }
 
 } // namespace isolux

@@ -3,31 +3,115 @@
 
 #include "core/math.h"
 
+#include <glm/vec4.hpp>
+
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace isolux {
 
-/// A Lambertian surface that may emit. Colours are linear Rec. 709.
-struct Material {
-    std::string name;
-    Vec3d baseColor{1.0};     ///< diffuse albedo, in [0, 1]
-    Vec3d emission{0.0};      ///< emitted radiance, W/(sr m^2), from the front face (and the back face if doubleSided)
-    bool doubleSided = false; ///< the back face emits too; scattering is two-sided always
+/// What the file stores for a texel, up to four channels; grey is repeated in red, green and blue, missing alpha is
+/// full.
+using Texel8 = glm::vec<4, std::uint8_t>;
+using Texel16 = glm::vec<4, std::uint16_t>;
 
-    [[nodiscard]] bool emits() const { return maxComponent(emission) > 0.0; }
+/// Pixels as stored, row 0 at the top: unsigned integers that stand for [0, 1]. One of the two lists is empty.
+struct TextureImage {
+    std::string name;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<Texel8> texels8;
+    std::vector<Texel16> texels16;
 };
 
-/// Triangles in object space, counter-clockwise seen from the front.
+enum class TextureWrap : std::uint32_t { repeat, mirroredRepeat, clampToEdge };
+enum class TextureFilter : std::uint32_t { nearest, linear };
+
+/// Which image, and how it is read between and beyond its texels. There are no smaller levels: many samples a pixel
+/// average what a rasteriser must filter in advance.
+struct Texture {
+    std::uint32_t image = 0;
+    TextureWrap wrapU = TextureWrap::repeat;
+    TextureWrap wrapV = TextureWrap::repeat;
+    TextureFilter filter = TextureFilter::linear;
+};
+
+inline constexpr std::uint32_t kNoTexture = 0xFFFFFFFFu;
+
+/// A use of a texture by a material: which coordinates of the mesh, and how they are transformed
+/// (KHR_texture_transform).
+struct TextureMap {
+    std::uint32_t texture = kNoTexture;
+    std::uint32_t uvSet = 0;
+    glm::dmat2 uvFromMesh{1.0}; ///< texture coordinates = uvFromMesh * (u, v) + offset
+    Vec2d offset{0.0};
+
+    [[nodiscard]] bool present() const { return texture != kNoTexture; }
+};
+
+/// What a map multiplies or replaces, and the channels it is read from.
+enum class MapSlot : std::uint32_t {
+    baseColor,         ///< RGB sRGB, times baseColor; A linear, times alpha
+    metallicRoughness, ///< G times roughness, B times metallic
+    normal,            ///< RGB = (n + 1)/2 in the tangent frame; x and y times normalScale
+    emission,          ///< RGB sRGB, times emission
+    transmission,      ///< R times transmission
+    thickness,         ///< G times thickness
+    specular,          ///< A times specular
+    specularColor,     ///< RGB sRGB, times specularColor
+};
+inline constexpr std::size_t kMapSlots = 8;
+
+/// Whether a slot's RGB is stored by the sRGB transfer function. Alpha never is.
+[[nodiscard]] constexpr bool isSrgb(MapSlot slot) {
+    return slot == MapSlot::baseColor || slot == MapSlot::emission || slot == MapSlot::specularColor;
+}
+
+enum class AlphaMode : std::uint32_t { opaque, mask, blend };
+
+/// glTF's metallic-roughness surface with the extensions named beside the fields. Colours are linear Rec. 709. As it
+/// stands it is a white Lambertian surface; README.md, "Surfaces", says what every number does.
+struct Material {
+    std::string name;
+    Vec3d baseColor{
+        1.0};            ///< albedo of the diffuse base, reflectance of a metal, tint of what is transmitted; in [0, 1]
+    Vec3d emission{0.0}; ///< emitted radiance, W/(sr m^2), from the front face (and the back face if doubleSided)
+    bool doubleSided = false;  ///< the back face emits too; scattering is two-sided always
+    double metallic = 0.0;     ///< in [0, 1]
+    double roughness = 1.0;    ///< in [0, 1]; alpha of GGX is its square
+    double ior = 1.5;          ///< index of refraction, at least 1 (KHR_materials_ior)
+    double specular = 0.0;     ///< in [0, 1]: how much of the dielectric's reflection there is (KHR_materials_specular)
+    Vec3d specularColor{1.0};  ///< at least 0: of the dielectric's reflection at normal incidence
+    double transmission = 0.0; ///< in [0, 1]: how much of the base transmits (KHR_materials_transmission)
+    double thickness = 0.0;    ///< above 0 the surface bounds a solid; 0: a thin wall (KHR_materials_volume)
+    Vec3d attenuationColor{1.0}; ///< in [0, 1]: what is left of white after attenuationDistance inside the solid
+    double attenuationDistance = std::numeric_limits<double>::infinity(); ///< world units, above 0
+    AlphaMode alphaMode = AlphaMode::opaque;
+    double alpha = 1.0; ///< coverage, in [0, 1]
+    double alphaCutoff = 0.5;
+    double normalScale = 1.0;
+    bool unlit = false; ///< shows baseColor whatever light there is (KHR_materials_unlit)
+    std::array<TextureMap, kMapSlots> maps{};
+
+    [[nodiscard]] const TextureMap& map(MapSlot slot) const { return maps[static_cast<std::size_t>(slot)]; }
+    [[nodiscard]] bool emits() const { return maxComponent(emission) > 0.0 && !unlit; }
+};
+
+/// Triangles in object space, counter-clockwise seen from the front. Attributes have one entry a position, or none.
 struct Mesh {
     std::string name;
     std::vector<Vec3f> positions;
-    std::vector<Vec3f> normals; ///< one per position, or empty: then the mesh is shaded flat
+    std::vector<Vec3f> normals; ///< empty: the mesh is shaded flat
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::uint32_t material = 0;
+    std::vector<std::vector<Vec2<float>>> uvs{}; ///< sets of texture coordinates, as many as materials may refer to
+    std::vector<glm::vec4> colors{};             ///< linear RGB and alpha, times the base colour; in [0, 1]
+    std::vector<glm::vec4> tangents{};           ///< unit; w: 1 or -1, the sign of the bitangent
 };
 
 /// One placement of a mesh in the world.
@@ -82,12 +166,24 @@ template <typename Real> [[nodiscard]] Real spotAttenuation(const PunctualLight&
 
 enum class EnvironmentExtent { sphere, upperHalf };
 
-/// Constant radiance from infinitely far away; the camera sees it.
+/// An equirectangular image of what comes from infinitely far: row 0 is +y, the middle of a row is -z, and columns to
+/// the right lie towards +x.
+struct EnvironmentMap {
+    std::string name;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<Vec3f> texels; ///< linear Rec. 709, finite, not negative
+};
+
+/// Radiance from infinitely far away; the camera sees it. Constant, or that of a map times `radiance`.
 struct Environment {
     Vec3d radiance{0.0};                                  ///< W/(sr m^2); zero: there is none
-    EnvironmentExtent extent = EnvironmentExtent::sphere; ///< upperHalf: from directions with y > 0 alone
+    EnvironmentExtent extent = EnvironmentExtent::sphere; ///< upperHalf: from directions with y > 0 alone; no map then
+    std::shared_ptr<const EnvironmentMap> map{};          ///< may be empty; one that is all black is none
+    double rotation = 0.0; ///< of the map about +y, in turns, counter-clockwise seen from above
 
     [[nodiscard]] bool emits() const { return maxComponent(radiance) > 0.0; }
+    /// Of the directions from which a constant environment emits.
     [[nodiscard]] double solidAngle() const { return (extent == EnvironmentExtent::sphere ? 4.0 : 2.0) * kPi; }
 };
 
@@ -98,6 +194,8 @@ struct Environment {
 
 struct Scene {
     std::string name;
+    std::vector<TextureImage> images;
+    std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
@@ -122,8 +220,9 @@ struct Scene {
 /// A camera that sees the whole scene from the front, slightly from above; for files that bring none.
 [[nodiscard]] Camera frameScene(const Scene& scene);
 
-/// Checks what both renderers rely on (indices in range, finite numbers, albedo in [0, 1], a size between 1e-30 and
-/// 1e30); throws Error naming the offender. A loader calls it last.
+/// Checks what both renderers rely on (indices in range, finite numbers, factors in the ranges above, a texture's image
+/// of as many texels as it says, texture coordinates for every map of a mesh's material, tangents beside normal maps, a
+/// size between 1e-30 and 1e30); throws Error naming the offender. A loader calls it last.
 void validate(const Scene& scene);
 
 } // namespace isolux

@@ -12,7 +12,11 @@ namespace isolux::test {
 namespace {
 
 constexpr int kTryAgain = 75;
-constexpr std::uint32_t kSamples = 64; // four batches: some are finished when the device is lost, and some are not
+constexpr std::uint32_t kSamples = 64; // four batches
+// The length of a dispatch follows the device's speed, so two runs need not make equally many. A device that fails
+// after as many as four batches took is lost while some are finished and others are not, unless a dispatch suddenly
+// does a quarter, or sixteen times, of what it did.
+constexpr std::uint32_t kNeverReached = 16 * kSamples;
 
 class LostDevice : public ProgramTest {
 protected:
@@ -23,7 +27,7 @@ protected:
                                          faults);
     }
 
-    [[nodiscard]] static std::string render(const std::string& output, std::uint64_t samples = kSamples) {
+    [[nodiscard]] static std::string render(const std::string& output, std::uint64_t samples = kNeverReached) {
         return "render '" + projectScene("cornell_box").string() + "' --width 32 --spp " + std::to_string(samples) +
                " -o '" + output + "'";
     }
@@ -36,9 +40,9 @@ protected:
     }
 
     /// The dispatches of a render that goes well, under the layer, which must not matter.
-    [[nodiscard]] std::uint64_t dispatchesNeeded() const {
-        const ProgramResult result =
-            runFaulty(render(file("whole.exr")) + " --json '" + file("whole.json") + "'", "ISOLUX_FAULT_AFTER=1000000");
+    [[nodiscard]] std::uint64_t dispatchesOfFourBatches() const {
+        const ProgramResult result = runFaulty(
+            render(file("whole.exr"), kSamples) + " --json '" + file("whole.json") + "'", "ISOLUX_FAULT_AFTER=1000000");
         EXPECT_EQ(result.exitCode, 0) << result.output;
         std::ifstream stream(file("whole.json"));
         return nlohmann::json::parse(stream).at("dispatches");
@@ -50,7 +54,7 @@ protected:
         const auto samples = metadataUnsigned(kept.metadata, "isolux/sampleCount");
         ASSERT_TRUE(samples);
         EXPECT_GE(*samples, 1u);
-        EXPECT_LT(*samples, kSamples);
+        EXPECT_LT(*samples, kNeverReached);
         const std::string kind = "stopped by the error: " + std::to_string(*samples) + " samples a pixel are in ";
         EXPECT_EQ(occurrences(output, kind + image), 1u) << output;
         ASSERT_EQ(runProgram(render(file("same.exr"), *samples) + " -q").exitCode, 0);
@@ -61,8 +65,7 @@ protected:
 };
 
 TEST_F(LostDevice, KeepsTheSamplesThatWereFinished) {
-    // Dispatches get longer as the render goes on, so three quarters of them lie in a later batch than the first.
-    const std::string after = " ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesNeeded() * 3 / 4);
+    const std::string after = " ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesOfFourBatches());
     const auto loseIn = [&](const std::string& call) {
         const std::string image = file(call + ".exr");
         const ProgramResult result = runFaulty(render(image), "ISOLUX_FAULT_IN=" + call + after);
@@ -75,7 +78,7 @@ TEST_F(LostDevice, KeepsTheSamplesThatWereFinished) {
 
 /// Who reads errors alone still learns what was saved: a name that may not be the one they gave.
 TEST_F(LostDevice, QuietStillSaysWhatWasSaved) {
-    const std::string after = "ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesNeeded() * 3 / 4);
+    const std::string after = "ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesOfFourBatches());
     std::ofstream(file("a.exr")) << "not an image of ours";
     const ProgramResult result = runFaulty(render(file("a.exr")) + " -q", after);
     expectTryAgain(result, "VK_ERROR_DEVICE_LOST");
@@ -86,7 +89,7 @@ TEST_F(LostDevice, QuietStillSaysWhatWasSaved) {
 /// A scheduler that runs it again must be told so every time, also when nothing may be replaced any more.
 TEST_F(LostDevice, AsksToTryAgainEveryTime) {
     const std::string image = file("kept.hdr"); // says nothing of its samples, so it is never replaced by a part
-    const std::string after = "ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesNeeded() * 3 / 4);
+    const std::string after = "ISOLUX_FAULT_AFTER=" + std::to_string(dispatchesOfFourBatches());
     for (int run = 0; run < 3; ++run) EXPECT_EQ(runFaulty(render(image), after).exitCode, kTryAgain) << run;
 }
 

@@ -2,7 +2,7 @@
 #include "film_fixture.h"
 
 #include "core/log.h"
-#include "film/srgb.h"
+#include "core/srgb.h"
 
 #include <spdlog/sinks/ostream_sink.h>
 

@@ -1,7 +1,7 @@
 // Tone maps and exposure: anchors computed by hand from the published formulas, what every map must keep, and PNGs.
 #include "film_fixture.h"
 
-#include "film/srgb.h"
+#include "core/srgb.h"
 #include "film/tonemap.h"
 
 #include <array>

@@ -1,0 +1,25 @@
+// Directional albedos of the microfacet lobes: what compensates for light that single scattering loses. Written by
+// tools/make_albedo_tables.py; both renderers interpolate in them (README.md, "Albedo tables").
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace isolux {
+
+inline constexpr std::uint32_t kAlbedoAngles = 64;      ///< nodes in x of the reflection table
+inline constexpr std::uint32_t kAlbedoRoughnesses = 32; ///< nodes in y, of both
+inline constexpr std::uint32_t kFresnelAngles = 32;     ///< nodes in sqrt(cosine) of the Fresnel table
+inline constexpr std::uint32_t kGlassAngles = 16;
+inline constexpr std::uint32_t kGlassRoughnesses = 16;
+inline constexpr std::uint32_t kGlassIndices = 16;
+
+/// Albedo of GGX that reflects everything: [roughness][angle], angle first.
+[[nodiscard]] std::span<const float> reflectionAlbedo();
+/// The average of (1 - cosine at the microfacet)^5 under it: [roughness][angle].
+[[nodiscard]] std::span<const float> fresnelAlbedo();
+/// Albedo of rough glass, reflection and transmission together: [side][index][roughness][angle]; side 0: the light
+/// comes back from the denser medium, i.e. wo lies outside.
+[[nodiscard]] std::span<const float> glassAlbedo();
+
+} // namespace isolux
