@@ -64,7 +64,7 @@ SceneReport examine(const std::string& file) {
 
 std::size_t bytesOf(const PackedScene& packed) {
     return packed.nodes.size() * sizeof(packed.nodes[0]) + packed.primitives.size() * sizeof(packed.primitives[0]) +
-           packed.normals.size() * sizeof(packed.normals[0]) + packed.tables.size() * sizeof(packed.tables[0]);
+           packed.attributes.size() * sizeof(packed.attributes[0]) + packed.tables.size() * sizeof(packed.tables[0]);
 }
 
 const char* projectionName(const Camera& camera) {

@@ -2,6 +2,8 @@
 
 #include "accel/wide_bvh.h"
 #include "core/error.h"
+#include "pack/effective_materials.h"
+#include "pack/packed_attributes.h"
 #include "scene/lights.h"
 #include "scene/pixel_filter.h"
 
@@ -24,9 +26,16 @@ glm::vec4 word(const Vec3f& xyz, float w) { return {xyz, w}; }
 /// The primitives in scene order with the boxes the BVH is built over.
 struct Primitives {
     std::vector<shared::PrimitiveRecord> records;
-    std::vector<shared::NormalRecord> normals;
     std::vector<Box3f> boxes;
 };
+
+double brightestTexel(const Environment& environment) {
+    if (!environment.map) return 1.0;
+    double brightest = 0.0;
+    for (const Vec3f& texel : environment.map->texels)
+        brightest = std::max(brightest, static_cast<double>(maxComponent(texel)));
+    return brightest;
+}
 
 DeviceSpace chooseSpace(const Box3d& bounds) {
     DeviceSpace space;
@@ -37,30 +46,11 @@ DeviceSpace chooseSpace(const Box3d& bounds) {
     return space;
 }
 
-double largestEntry(const Mat3d& m) {
-    double largest = 0.0;
-    for (int column = 0; column < 3; ++column) largest = std::max(largest, maxComponent(glm::abs(m[column])));
-    return largest;
-}
-
-/// The inverse transpose up to a factor: the cofactors of the upper 3x3 matrix, finite for singular matrices too. One
-/// factor for the whole instance keeps the vertex normals' lengths in proportion, as interpolation needs; it is chosen
-/// so that no length is lost to float's range.
-Mat3d normalMatrix(const Mat4d& m) {
-    const Mat3d linear(m);
-    const double size = largestEntry(linear);
-    if (size == 0.0) return Mat3d(0.0);
-    const Mat3d scaled = linear / size;
-    const Mat3d cofactors(glm::cross(scaled[1], scaled[2]), glm::cross(scaled[2], scaled[0]),
-                          glm::cross(scaled[0], scaled[1]));
-    const double cofactorSize = largestEntry(cofactors);
-    return cofactorSize == 0.0 ? cofactors : cofactors / cofactorSize;
-}
-
 class Packer {
 public:
-    Packer(const Scene& scene, const RenderSettings& settings)
-        : scene_(scene), settings_(settings), lights_(buildLightTable(scene, settings)) {
+    Packer(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features)
+        : scene_(scene), settings_(settings), features_(features), materials_(effectiveMaterials(scene)),
+          lights_(buildLightTable(scene, settings)) {
         packed_.space = chooseSpace(worldBounds(scene));
         const double brightest = brightestLight();
         if (brightest > 0.0) packed_.radianceScale = std::exp2(-std::ceil(std::log2(brightest)));
@@ -74,7 +64,8 @@ public:
         for (const Instance& instance : scene_.instances) addInstance(instance);
         for (const Sphere& sphere : scene_.spheres) addSphere(sphere);
         const std::vector<std::uint32_t> order = arrange();
-        orderPrimitives(order);
+        packed_.primitives.reserve(order.size());
+        for (const std::uint32_t id : order) packed_.primitives.push_back(primitives_.records[id]);
         addTables(order);
         return std::move(packed_);
     }
@@ -82,9 +73,9 @@ public:
 private:
     /// The largest component that any light record will hold, in the world's radiance.
     [[nodiscard]] double brightestLight() const {
-        double brightest = maxComponent(scene_.environment.radiance);
-        for (const Material& material : scene_.materials)
-            brightest = std::max(brightest, maxComponent(material.emission));
+        double brightest = maxComponent(scene_.environment.radiance) * brightestTexel(scene_.environment);
+        for (const Material& material : materials_)
+            brightest = std::max(brightest, maxComponent(material.unlit ? material.baseColor : material.emission));
         for (const PunctualLight& light : scene_.punctualLights)
             brightest = std::max(brightest, maxComponent(light.intensity) * intensityUnit(light));
         return brightest;
@@ -97,7 +88,6 @@ private:
 
     void addInstance(const Instance& instance) {
         const Mesh& mesh = scene_.meshes[instance.mesh];
-        const Mat3d normalFromObject = normalMatrix(instance.worldFromObject);
         beginObject();
         const bool mirrored = glm::determinant(Mat3d(instance.worldFromObject)) < 0.0;
         std::vector<Vec3f> positions(mesh.positions.size());
@@ -107,13 +97,6 @@ private:
             // A mirrored instance shows its front where the vertices run clockwise; turned round, they do not.
             if (mirrored) std::swap(triangle[1], triangle[2]);
             addTriangle({positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]}, mesh.material);
-            shared::NormalRecord normals{};
-            if (!mesh.normals.empty()) {
-                normals.n0 = word(Vec3f(normalFromObject * Vec3d(mesh.normals[triangle[0]])), 0.0f);
-                normals.n1 = word(Vec3f(normalFromObject * Vec3d(mesh.normals[triangle[1]])), 0.0f);
-                normals.n2 = word(Vec3f(normalFromObject * Vec3d(mesh.normals[triangle[2]])), 0.0f);
-            }
-            primitives_.normals.push_back(normals);
         }
     }
 
@@ -121,11 +104,15 @@ private:
 
     void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
-        primitives_.records.push_back(
-            {word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])), word(p[2], asFloat(id))});
+        primitives_.records.push_back({word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])),
+                                       word(p[2], asFloat(id | alphaBit(material)))});
         Box3f box;
         for (const Vec3f& vertex : p) box.extend(vertex);
         primitives_.boxes.push_back(box);
+    }
+
+    [[nodiscard]] std::uint32_t alphaBit(std::uint32_t material) const {
+        return materials_[material].alphaMode == AlphaMode::opaque ? 0u : shared::kAlphaBit;
     }
 
     void addSphere(const Sphere& sphere) {
@@ -133,10 +120,9 @@ private:
         beginObject();
         const Vec3f center(packed_.space.fromWorld(sphere.center));
         const auto radius = static_cast<float>(sphere.radius * packed_.space.scale);
-        primitives_.records.push_back({word(center, asFloat(sphere.material)),
-                                       word({radius, 0.0f, 0.0f}, asFloat(lights_.lightOf[id])),
-                                       word(Vec3f(0.0f), asFloat(id | shared::kSphereBit))});
-        primitives_.normals.emplace_back();
+        primitives_.records.push_back(
+            {word(center, asFloat(sphere.material)), word({radius, 0.0f, 0.0f}, asFloat(lights_.lightOf[id])),
+             word(Vec3f(0.0f), asFloat(id | shared::kSphereBit | alphaBit(sphere.material)))});
         Box3f box;
         for (int axis = 0; axis < 3; ++axis) {
             box.lower[axis] = std::nextafter(center[axis] - radius, -std::numeric_limits<float>::infinity());
@@ -182,42 +168,44 @@ private:
         }
     }
 
-    void orderPrimitives(const std::vector<std::uint32_t>& order) {
-        packed_.primitives.reserve(order.size());
-        for (const std::uint32_t id : order) packed_.primitives.push_back(primitives_.records[id]);
-        packed_.normals.reserve(order.size());
-        for (const std::uint32_t id : order) packed_.normals.push_back(primitives_.normals[id]);
-    }
-
     void addTables(const std::vector<std::uint32_t>& order) {
         packed_.materialCount = static_cast<std::uint32_t>(scene_.materials.size());
-        for (const Material& material : scene_.materials)
-            append(shared::MaterialRecord{word(Vec3f(material.baseColor), 0.0f),
-                                          word(radiance(material.emission), material.doubleSided ? 1.0f : 0.0f)});
+        const MaterialPacker materials(scene_, materials_, {packed_.space.scale, packed_.radianceScale});
+        materials.appendMaterials(tables_);
         packed_.lightCount = static_cast<std::uint32_t>(lights_.lights.size());
-        packed_.lightOffset = static_cast<std::uint32_t>(packed_.tables.size());
+        packed_.lightOffset = tables_.next();
         std::vector<std::uint32_t> indexOfId(order.size());
         for (std::uint32_t i = 0; i < order.size(); ++i) indexOfId[order[i]] = i;
-        for (std::uint32_t light = 0; light < packed_.lightCount; ++light) append(lightRecord(light, indexOfId));
+        for (std::uint32_t light = 0; light < packed_.lightCount; ++light)
+            tables_.append(lightRecord(light, indexOfId));
         if (lights_.environment != kNoLight)
-            packed_.environmentPdf = lights_.samplesOf[lights_.environment] / scene_.environment.solidAngle();
+            packed_.environmentPdf = lights_.samplesOf[lights_.environment] /
+                                     (scene_.environment.map ? 1.0 : scene_.environment.solidAngle());
         packed_.lightSamples = lights_.sampleCount;
         packed_.samplesPerArea = lights_.samplesPerArea;
         packed_.areaLights = lights_.areaCount;
         packed_.punctualLights = lights_.punctualCount;
         packed_.lightBits = lights_.choice.bits;
-        packed_.binOffset = static_cast<std::uint32_t>(packed_.tables.size());
+        packed_.binOffset = tables_.next();
         for (const AliasTable::Bin& bin : lights_.choice.bins)
-            append(shared::LightBinRecord{{bin.threshold, bin.alias, 0, 0}});
-        packed_.filterOffset = static_cast<std::uint32_t>(packed_.tables.size());
+            tables_.append(shared::LightBinRecord{{bin.threshold, bin.alias, 0, 0}});
+        packed_.filterOffset = tables_.next();
         if (settings_.filter.kind != PixelFilter::box) addFilter();
+        packed_.textures = materials.appendTextures(tables_);
+        if (features_.environmentMap && scene_.environment.map)
+            packed_.environment = appendEnvironment(tables_, *scene_.environment.map);
+        packed_.tables = tables_.take();
+        PackedAttributes attributes = packAttributes(
+            scene_, {features_.smoothNormals, features_.normalMaps, features_.vertexColors, materials.uvSets()}, order);
+        packed_.attributes = std::move(attributes.words);
+        packed_.attributeOffsets = attributes.offsets;
     }
 
     void addFilter() {
         const FilterTable table = buildFilterTable(settings_.filter);
         const auto& q = table.quantiles;
         for (std::size_t cell = 0; cell < kFilterCells; cell += 2)
-            append(shared::FilterCellsRecord{{q[cell], q[cell + 1], q[cell + 1], q[cell + 2]}});
+            tables_.append(shared::FilterCellsRecord{{q[cell], q[cell + 1], q[cell + 1], q[cell + 2]}});
     }
 
     shared::LightRecord lightRecord(std::uint32_t light, const std::vector<std::uint32_t>& indexOfId) const {
@@ -236,9 +224,12 @@ private:
         const Vec3d p1(primitive.p1Light);
         const Vec3d p2(primitive.p2Id);
         const double area = sphere ? 0.0 : 0.5 * glm::length(glm::cross(p1 - p0, p2 - p0));
-        const Material& material = scene_.materials[std::bit_cast<std::uint32_t>(primitive.p0Material.w)];
+        const Material& material = materials_[std::bit_cast<std::uint32_t>(primitive.p0Material.w)];
+        const bool covers = material.alphaMode == AlphaMode::opaque;
         const std::uint32_t kind = (sphere ? shared::kLightSphere : shared::kLightTriangle) |
-                                   (material.doubleSided ? shared::kLightTwoSidedBit : 0u);
+                                   (material.doubleSided ? shared::kLightTwoSidedBit : 0u) |
+                                   (material.map(MapSlot::emission).present() ? shared::kLightMappedBit : 0u) |
+                                   (covers ? 0u : shared::kLightCoverageBit);
         return {word(Vec3f(p0), asFloat(indexOfId[id])), word(Vec3f(p1), 0.0f),
                 word(Vec3f(p2), static_cast<float>(area)), word(radiance(material.emission), asFloat(kind))};
     }
@@ -274,16 +265,13 @@ private:
 
     [[nodiscard]] Vec3f radiance(const Vec3d& inWorld) const { return Vec3f(inWorld * packed_.radianceScale); }
 
-    template <typename Record> void append(const Record& record) {
-        const std::size_t first = packed_.tables.size();
-        packed_.tables.resize(first + sizeof(Record) / sizeof(glm::uvec4));
-        std::memcpy(&packed_.tables[first], &record, sizeof(Record));
-    }
-
     const Scene& scene_;
     const RenderSettings& settings_;
+    const SceneFeatures& features_;
+    std::vector<Material> materials_; ///< the effective ones
     LightTable lights_;
     Primitives primitives_;
+    Tables tables_;
     PackedScene packed_;
 };
 
@@ -313,7 +301,9 @@ glm::vec4 packMethods(const DeviceSpace& space, const RenderSettings& settings) 
 
 } // namespace
 
-PackedScene packScene(const Scene& scene, const RenderSettings& settings) { return Packer(scene, settings).pack(); }
+PackedScene packScene(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features) {
+    return Packer(scene, settings, features).pack();
+}
 
 shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene, const RenderSettings& settings) {
     const Camera& camera = scene.cameras.at(settings.camera);
@@ -332,6 +322,9 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.environment =
         word(Vec3f(environment.radiance * packed.radianceScale), static_cast<float>(packed.environmentPdf));
     parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
+    parameters.environmentLimits.y = static_cast<float>(environment.rotation - std::floor(environment.rotation));
+    const PackedEnvironment& map = packed.environment;
+    parameters.environmentMap = {map.texels, map.bins, map.width, map.height};
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),
                             static_cast<std::uint32_t>(settings.seed >> 32)};
     const BounceRange bounces = countedBounces(settings);
@@ -340,7 +333,10 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.tableOffsets = {0, packed.lightOffset, packed.binOffset, packed.filterOffset};
     parameters.sceneCounts = {static_cast<std::uint32_t>(packed.nodes.size()),
                               static_cast<std::uint32_t>(packed.primitives.size()), packed.materialCount, 0};
-    parameters.sampling = {bounces.first, cellBitsOf(settings), 0, 0};
+    parameters.textureOffsets = {packed.textures.records, packed.textures.srgb8, packed.textures.srgb16,
+                                 packed.textures.albedos};
+    parameters.attributeOffsets = packed.attributeOffsets;
+    parameters.sampling = {bounces.first, cellBitsOf(settings), map.bits, 0};
     return parameters;
 }
 

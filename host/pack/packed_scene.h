@@ -2,6 +2,9 @@
 #pragma once
 
 #include "accel/bvh.h"
+#include "pack/packed_environment.h"
+#include "pack/packed_materials.h"
+#include "pack/scene_features.h"
 #include "scene/render_settings.h"
 #include "scene/scene.h"
 
@@ -25,8 +28,12 @@ struct DeviceSpace {
 struct PackedScene {
     std::vector<shared::NodeRecord> nodes;
     std::vector<shared::PrimitiveRecord> primitives; ///< in the order of the BVH's leaves
-    std::vector<shared::NormalRecord> normals;       ///< beside `primitives`; zero where a mesh is flat
-    std::vector<glm::uvec4> tables;                  ///< materials, lights, light bins, filter, one after the other
+    std::vector<glm::vec4> attributes;               ///< sections of records beside `primitives`
+    glm::uvec4 attributeOffsets{0u};                 ///< first word of each section (RenderParameters)
+    std::vector<glm::uvec4>
+        tables; ///< materials, lights, light bins, filter, textures, environment, one after the other
+    TextureOffsets textures;
+    PackedEnvironment environment;
     std::uint32_t materialCount = 0;
     std::uint32_t lightCount = 0;
     std::uint32_t lightBits = 0;
@@ -38,7 +45,9 @@ struct PackedScene {
     std::uint32_t samplesPerArea = 1;
     std::uint32_t areaLights = 0;
     std::uint32_t punctualLights = 0;
-    double environmentPdf = 0.0; ///< density of light samples per solid angle; 0 if they never go to the environment
+    /// Density of light samples per solid angle, of a map times that of its cells; 0 if they never go to the
+    /// environment.
+    double environmentPdf = 0.0;
     std::vector<std::uint32_t> firstOfObject; ///< first primitive id of each instance and each sphere, in scene order
     std::uint32_t stackBound = 1;             ///< entries a traversal stack must hold
     /// Device radiance = this * world radiance: a power of two that brings the brightest light near 1, so that squares
@@ -49,8 +58,12 @@ struct PackedScene {
 };
 
 /// Transforms in double, builds the BVH over the rounded vertices, unless the settings want none, and packs everything.
-/// Throws Error if the scene has more primitives than a child slot can name (2^28 - 1).
-[[nodiscard]] PackedScene packScene(const Scene& scene, const RenderSettings& settings = {});
+/// Holds what `features`, at least those that the scene needs, can reach. Throws Error if the scene has more primitives
+/// than a child slot can name (2^28 - 1).
+[[nodiscard]] PackedScene packScene(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features);
+[[nodiscard]] inline PackedScene packScene(const Scene& scene, const RenderSettings& settings = {}) {
+    return packScene(scene, settings, findFeatures(scene, settings));
+}
 
 /// The parameters that stay the same over a render.
 [[nodiscard]] shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene,

@@ -1,24 +1,15 @@
 #include "pack/scene_features.h"
 
+#include "pack/effective_materials.h"
 #include "scene/lights.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
 namespace isolux {
 namespace {
-
-bool isSmooth(const Scene& scene, const Instance& instance) { return !scene.meshes[instance.mesh].normals.empty(); }
-
-LightCount countLights(const LightTable& table) {
-    const std::size_t lights = table.lights.size();
-    return lights == 0 ? LightCount::none : lights == 1 ? LightCount::one : LightCount::many;
-}
-
-bool hasKind(const LightTable& table, LightKind kind) {
-    return std::any_of(table.lights.begin(), table.lights.end(),
-                       [&](const Light& light) { return light.kind == kind; });
-}
 
 constexpr auto kNamed = std::to_array<NamedFeature>({
     {"spheres", &SceneFeatures::spheres},
@@ -45,34 +36,183 @@ constexpr auto kNamed = std::to_array<NamedFeature>({
     {"unlit", &SceneFeatures::unlit},
 });
 
+bool usesMap(const Material& material, MapSlot slot) { return material.map(slot).present(); }
+
+/// Whether the opaque part of a surface, if it has one, reflects other than diffusely.
+bool isSpecular(const Material& material) {
+    const bool allGlass = material.transmission == 1.0 && material.metallic == 0.0 &&
+                          !usesMap(material, MapSlot::transmission) && !usesMap(material, MapSlot::metallicRoughness);
+    return !material.unlit && !allGlass && (material.metallic > 0.0 || material.specular > 0.0);
+}
+
+bool isGlass(const Material& material) {
+    const bool allMetal = material.metallic == 1.0 && !usesMap(material, MapSlot::metallicRoughness);
+    return !material.unlit && !allMetal && material.transmission > 0.0;
+}
+
+/// Below it the lobes of a surface without a map are delta lobes for certain.
+bool isRough(const Material& material) {
+    constexpr double kSmallestAlpha = 1e-5;
+    const bool mapped = usesMap(material, MapSlot::metallicRoughness) && material.roughness > 0.0;
+    // Rounding may take what is hardly below the bound for above it.
+    return mapped || material.roughness * material.roughness > 0.999 * kSmallestAlpha;
+}
+
+bool isSolid(const Material& material) { return isGlass(material) && material.thickness > 0.0; }
+
+bool absorbs(const Material& material) {
+    return isSolid(material) && std::isfinite(material.attenuationDistance) && material.attenuationColor != Vec3d(1.0);
+}
+
+/// A feature that some surfaces have, and how a reason says so.
+struct SurfaceFeature {
+    bool SceneFeatures::*flag;
+    bool (*has)(const Material&);
+    std::string_view having; ///< "2 of 5 materials ..."
+};
+
+constexpr auto kOfSurfaces = std::to_array<SurfaceFeature>({
+    {&SceneFeatures::specular, isSpecular, "reflect other than diffusely"},
+    {&SceneFeatures::roughSpecular, [](const Material& m) { return isSpecular(m) && isRough(m); },
+     "reflect so, and not as a mirror"},
+    {&SceneFeatures::glass, isGlass, "transmit"},
+    {&SceneFeatures::roughGlass, [](const Material& m) { return isGlass(m) && isRough(m); },
+     "transmit, and not smoothly"},
+    {&SceneFeatures::solids, isSolid, "bound a solid that refracts"},
+    {&SceneFeatures::absorption, absorbs, "bound a solid that absorbs"},
+    {&SceneFeatures::baseColorMaps, [](const Material& m) { return usesMap(m, MapSlot::baseColor); },
+     "have a base colour map that varies"},
+    {&SceneFeatures::metallicRoughnessMaps, [](const Material& m) { return usesMap(m, MapSlot::metallicRoughness); },
+     "have a metallic-roughness map that varies"},
+    {&SceneFeatures::normalMaps, [](const Material& m) { return usesMap(m, MapSlot::normal); },
+     "have a normal map that is not flat"},
+    {&SceneFeatures::emissionMaps, [](const Material& m) { return usesMap(m, MapSlot::emission); },
+     "have an emission map that varies"},
+    {&SceneFeatures::transmissionMaps,
+     [](const Material& m) { return usesMap(m, MapSlot::transmission) || usesMap(m, MapSlot::thickness); },
+     "have a transmission or thickness map that varies"},
+    {&SceneFeatures::specularMaps,
+     [](const Material& m) { return usesMap(m, MapSlot::specular) || usesMap(m, MapSlot::specularColor); },
+     "have a specular map that varies"},
+    {&SceneFeatures::alphaMask, [](const Material& m) { return m.alphaMode == AlphaMode::mask; },
+     "are cut out by a mask"},
+    {&SceneFeatures::alphaBlend, [](const Material& m) { return m.alphaMode == AlphaMode::blend; },
+     "are blended with what lies behind"},
+    {&SceneFeatures::unlit, [](const Material& m) { return m.unlit; }, "are unlit"},
+});
+
+/// Finds each feature with its reason.
+class FeatureFinder {
+public:
+    FeatureFinder(const Scene& scene, const RenderSettings& settings)
+        : scene_(scene), settings_(settings), lights_(buildLightTable(scene, settings)) {
+        const std::vector<Material> all = effectiveMaterials(scene);
+        const std::vector<bool> used = materialsInUse(scene);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (used[i]) materials_.push_back(all[i]);
+        findGeometry();
+        findLights();
+        findRoulette();
+        for (const SurfaceFeature& feature : kOfSurfaces) findOnSurfaces(feature);
+    }
+
+    [[nodiscard]] const SceneFeatures& features() const { return features_; }
+
+    /// In the order of kNamed, then lights and roulette.
+    [[nodiscard]] std::vector<FeatureNote> notes() const {
+        std::vector<FeatureNote> notes;
+        for (const NamedFeature& named : kNamed)
+            notes.push_back({std::string(named.name), features_.*named.flag, reasonOf(named.flag)});
+        notes.push_back(lights_.lights.size() > 1
+                            ? FeatureNote{"light-choice", true, fmt::format("{} lights", lights_.lights.size())}
+                            : FeatureNote{"light-choice", false,
+                                          lights_.lights.empty() ? "no light is sampled" : "there is one light"});
+        notes.push_back({"roulette", features_.roulette != Roulette::off, rouletteReason_});
+        return notes;
+    }
+
+private:
+    void note(bool SceneFeatures::*flag, bool used, std::string reason) {
+        features_.*flag = used;
+        reasons_.push_back({flag, std::move(reason)});
+    }
+
+    [[nodiscard]] std::string reasonOf(bool SceneFeatures::*flag) const {
+        for (const auto& [of, reason] : reasons_)
+            if (of == flag) return reason;
+        return {};
+    }
+
+    void findGeometry() {
+        const std::size_t spheres = scene_.spheres.size();
+        note(&SceneFeatures::spheres, spheres > 0, spheres > 0 ? fmt::format("{} exact", spheres) : "none is exact");
+        const auto smooth = std::count_if(scene_.instances.begin(), scene_.instances.end(),
+                                          [&](const Instance& i) { return !scene_.meshes[i.mesh].normals.empty(); });
+        note(&SceneFeatures::smoothNormals, smooth > 0,
+             fmt::format("{} of {} placed meshes have vertex normals", smooth, scene_.instances.size()));
+        const bool colors = hasVertexColors(scene_);
+        note(&SceneFeatures::vertexColors, colors, colors ? "some are not white" : "no mesh has any but white");
+    }
+
+    [[nodiscard]] bool hasKind(LightKind kind) const {
+        return std::any_of(lights_.lights.begin(), lights_.lights.end(),
+                           [&](const Light& light) { return light.kind == kind; });
+    }
+
+    void findLights() {
+        const std::size_t lights = lights_.lights.size();
+        features_.lights = lights == 0 ? LightCount::none : lights == 1 ? LightCount::one : LightCount::many;
+        const bool area = hasKind(LightKind::area);
+        note(&SceneFeatures::areaLights, area,
+             area ? fmt::format("{} emitting primitives", lights_.areaCount) : "no emitting primitive is sampled");
+        const bool punctual = hasKind(LightKind::punctual);
+        note(&SceneFeatures::punctualLights, punctual,
+             punctual ? fmt::format("{} of them", lights_.punctualCount) : "no point, spot or directional light");
+        // Seen, even if there is nothing that it could light.
+        const bool environment = followsLight(settings_) && scene_.environment.emits();
+        note(&SceneFeatures::environment, environment, environment ? "it emits" : "nothing comes from afar");
+        const bool map = environment && scene_.environment.map != nullptr;
+        note(&SceneFeatures::environmentMap, map,
+             map ? fmt::format("{} x {} texels", scene_.environment.map->width, scene_.environment.map->height)
+                 : (environment ? "it is constant" : "nothing comes from afar"));
+    }
+
+    void findRoulette() {
+        // A path of the last bounce is never asked whether to make another.
+        const bool follows = followsLight(settings_);
+        const bool asked = follows && countedBounces(settings_).last >= settings_.roulette.start;
+        features_.roulette = asked ? settings_.roulette.kind : Roulette::off;
+        rouletteReason_ = features_.roulette != Roulette::off
+                              ? fmt::format("from bounce {} on", settings_.roulette.start)
+                          : !follows ? "no path is followed"
+                          : !asked   ? fmt::format("the last bounce, {}, comes first", countedBounces(settings_).last)
+                                     : "switched off";
+    }
+
+    void findOnSurfaces(const SurfaceFeature& feature) {
+        const auto count = std::count_if(materials_.begin(), materials_.end(), feature.has);
+        note(feature.flag, count > 0, fmt::format("{} of {} materials {}", count, materials_.size(), feature.having));
+    }
+
+    const Scene& scene_;
+    const RenderSettings& settings_;
+    LightTable lights_;
+    std::vector<Material> materials_; ///< effective ones in use
+    SceneFeatures features_;
+    std::vector<std::pair<bool SceneFeatures::*, std::string>> reasons_;
+    std::string rouletteReason_;
+};
+
 } // namespace
 
 std::span<const NamedFeature> namedFeatures() { return kNamed; }
 
 SceneFeatures findFeatures(const Scene& scene, const RenderSettings& settings) {
-    SceneFeatures features;
-    features.spheres = !scene.spheres.empty();
-    features.smoothNormals = std::any_of(scene.instances.begin(), scene.instances.end(),
-                                         [&](const Instance& instance) { return isSmooth(scene, instance); });
-    // A path of the last bounce is never asked whether to make another.
-    const bool asked = followsLight(settings) && countedBounces(settings).last >= settings.roulette.start;
-    features.roulette = asked ? settings.roulette.kind : Roulette::off;
-    const LightTable lights = buildLightTable(scene, settings);
-    features.lights = countLights(lights);
-    features.areaLights = hasKind(lights, LightKind::area);
-    features.punctualLights = hasKind(lights, LightKind::punctual);
-    features.environment =
-        followsLight(settings) && scene.environment.emits(); // seen, even if there is nothing that it could light
-    return features;
+    return FeatureFinder(scene, settings).features();
 }
 
 std::vector<FeatureNote> explainFeatures(const Scene& scene, const RenderSettings& settings) {
-    const SceneFeatures features = findFeatures(scene, settings);
-    std::vector<FeatureNote> notes;
-    for (const NamedFeature& named : kNamed)
-        notes.push_back({std::string(named.name), features.*named.flag,
-                         features.*named.flag ? "the scene has it" : "the scene has none"});
-    return notes;
+    return FeatureFinder(scene, settings).notes();
 }
 
 } // namespace isolux

@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t kPartCount = 4;
 constexpr std::array<std::uint32_t, kPartCount> kBindings{shared::kBindNodes, shared::kBindPrimitives,
-                                                          shared::kBindNormals, shared::kBindTables};
-constexpr std::array kPartNames{"BVH", "primitives", "vertex normals", "materials and lights"};
+                                                          shared::kBindAttributes, shared::kBindTables};
+constexpr std::array kPartNames{"BVH", "primitives", "vertex attributes", "materials, textures and lights"};
 constexpr VkDeviceSize kWordBytes = 16;
 
 std::array<std::span<const std::byte>, kPartCount> partsOf(const PackedScene& scene) {
     return {std::as_bytes(std::span(scene.nodes)), std::as_bytes(std::span(scene.primitives)),
-            std::as_bytes(std::span(scene.normals)), std::as_bytes(std::span(scene.tables))};
+            std::as_bytes(std::span(scene.attributes)), std::as_bytes(std::span(scene.tables))};
 }
 
 bool fitsTexelBuffers(const DeviceLimits& limits, std::span<const std::byte> data) {

@@ -68,6 +68,39 @@ Specialization specializeMethods(const RenderSettings& settings, const shared::R
             {shared::kSpecKeepSamples, flag(usesReplicates(settings.sampler))}};
 }
 
+/// Which constant each feature is.
+constexpr auto kFeatureConstants = std::to_array<std::pair<std::uint32_t, bool SceneFeatures::*>>({
+    {shared::kSpecSpheres, &SceneFeatures::spheres},
+    {shared::kSpecSmoothNormals, &SceneFeatures::smoothNormals},
+    {shared::kSpecAreaLights, &SceneFeatures::areaLights},
+    {shared::kSpecPunctualLights, &SceneFeatures::punctualLights},
+    {shared::kSpecEnvironment, &SceneFeatures::environment},
+    {shared::kSpecEnvironmentMap, &SceneFeatures::environmentMap},
+    {shared::kSpecSpecular, &SceneFeatures::specular},
+    {shared::kSpecRoughSpecular, &SceneFeatures::roughSpecular},
+    {shared::kSpecGlass, &SceneFeatures::glass},
+    {shared::kSpecRoughGlass, &SceneFeatures::roughGlass},
+    {shared::kSpecSolids, &SceneFeatures::solids},
+    {shared::kSpecAbsorption, &SceneFeatures::absorption},
+    {shared::kSpecBaseColorMaps, &SceneFeatures::baseColorMaps},
+    {shared::kSpecMetallicRoughnessMaps, &SceneFeatures::metallicRoughnessMaps},
+    {shared::kSpecNormalMaps, &SceneFeatures::normalMaps},
+    {shared::kSpecEmissionMaps, &SceneFeatures::emissionMaps},
+    {shared::kSpecTransmissionMaps, &SceneFeatures::transmissionMaps},
+    {shared::kSpecSpecularMaps, &SceneFeatures::specularMaps},
+    {shared::kSpecVertexColors, &SceneFeatures::vertexColors},
+    {shared::kSpecAlphaMask, &SceneFeatures::alphaMask},
+    {shared::kSpecAlphaBlend, &SceneFeatures::alphaBlend},
+    {shared::kSpecUnlit, &SceneFeatures::unlit},
+});
+
+Specialization specializeFeatures(const SceneFeatures& features) {
+    Specialization constants{{shared::kSpecLights, static_cast<std::uint32_t>(features.lights)},
+                             {shared::kSpecRoulette, static_cast<std::uint32_t>(features.roulette)}};
+    for (const auto& [constant, flag] : kFeatureConstants) constants[constant] = features.*flag ? 1u : 0u;
+    return constants;
+}
+
 template <typename Record> std::span<const Record> recordsIn(const Buffer& buffer) {
     return {reinterpret_cast<const Record*>(buffer.mapped().data()), buffer.mapped().size() / sizeof(Record)};
 }
@@ -82,9 +115,8 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     };
     announce("building the BVH");
     Stopwatch packing;
-    PackedScene packed = packScene(scene, settings);
     statistics_.features = options.features.value_or(findFeatures(scene, settings));
-    if (!statistics_.features.smoothNormals) packed.normals.clear(); // nothing will read them
+    const PackedScene packed = packScene(scene, settings, statistics_.features);
     parameters_ = packParameters(packed, scene, settings);
     stackSize_ = packed.stackBound;
     firstOfObject_ = packed.firstOfObject;
@@ -173,18 +205,11 @@ void PathRenderer::createKernel() {
     source.specialization = {{shared::kSpecWorkgroupSize, kWorkgroupSize},
                              {shared::kSpecTexelBuffers, scene_->usesTexelBuffers() ? 1u : 0u},
                              {shared::kSpecStackSize, stackSize_},
-                             {shared::kSpecSpheres, features.spheres ? 1u : 0u},
-                             {shared::kSpecLights, static_cast<std::uint32_t>(features.lights)},
-                             {shared::kSpecSmoothNormals, features.smoothNormals ? 1u : 0u},
-                             {shared::kSpecRoulette, static_cast<std::uint32_t>(features.roulette)},
-                             {shared::kSpecAreaLights, features.areaLights ? 1u : 0u},
-                             {shared::kSpecPunctualLights, features.punctualLights ? 1u : 0u},
-                             {shared::kSpecEnvironment, features.environment ? 1u : 0u},
                              {shared::kSpecAovs, options_.aovs == Aovs::on ? 1u : 0u},
                              {shared::kSpecPathSignatures, options_.signatures == PathSignatures::on ? 1u : 0u},
                              {shared::kSpecTraversalCounts, options_.counts == TraversalCounts::on ? 1u : 0u}};
-    const Specialization methods = specializeMethods(settings_, parameters_);
-    source.specialization.insert(methods.begin(), methods.end());
+    source.specialization.merge(specializeFeatures(features));
+    source.specialization.merge(specializeMethods(settings_, parameters_));
     kernel_ = std::make_unique<Kernel>(device_, source);
     scene_->bindTo(*kernel_);
     kernel_->bind(shared::kBindRender, *parameterBuffer_);

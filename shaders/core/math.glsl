@@ -28,6 +28,21 @@ vec2 cosSinTurn(float u) {
     return (q & 2u) == 0u ? rotated : -rotated;
 }
 
+// atan2(y, x) as a fraction of a turn, in [-1/2, 1/2], to about 1 ulp of a quarter turn: a minimax polynomial up to
+// tan(pi/8) (Cephes, Moshier 1989), since the built-in ones may be off by 4096 ulp. (0, 0) gives 0.
+float atan2Turns(float y, float x) {
+    float largest = max(abs(x), abs(y));
+    float ratio = largest == 0.0 ? 0.0 : min(abs(x), abs(y)) / largest;
+    bool upper = ratio > 0.41421356;
+    float t = upper ? (ratio - 1.0) / (ratio + 1.0) : ratio;
+    float t2 = t * t;
+    float angle = t + t * t2 * (-3.33329491539e-1 + t2 * (1.99777106478e-1 + t2 * (-1.38776856032e-1 + t2 * 8.05374449538e-2)));
+    float turns = (upper ? 0.125 : 0.0) + angle * (0.5 * kInvPi);
+    turns = abs(y) > abs(x) ? 0.25 - turns : turns;
+    turns = x < 0.0 ? 0.5 - turns : turns;
+    return y < 0.0 ? -turns : turns;
+}
+
 // Concentric map of the square to the disk (Shirley and Chiu 1997); `radius`: signed distance from the centre.
 vec2 concentricDisk(vec2 u, out float radius) {
     vec2 d = 2.0 * u - 1.0;

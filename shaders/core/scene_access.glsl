@@ -6,7 +6,7 @@
 
 uvec4 fetchNode(uint word);
 uvec4 fetchPrimitive(uint word);
-uvec4 fetchNormal(uint word);
+uvec4 fetchAttribute(uint word);
 uvec4 fetchTable(uint word);
 
 PrimitiveRecord readPrimitive(uint index) {
@@ -15,15 +15,40 @@ PrimitiveRecord readPrimitive(uint index) {
                            uintBitsToFloat(fetchPrimitive(word + 2u)));
 }
 
-NormalRecord readNormals(uint primitive) {
-    uint word = primitive * kNormalWords;
-    return NormalRecord(uintBitsToFloat(fetchNormal(word)), uintBitsToFloat(fetchNormal(word + 1u)),
-                        uintBitsToFloat(fetchNormal(word + 2u)));
+vec4 attributeWord(uint word) { return uintBitsToFloat(fetchAttribute(word)); }
+
+// Attributes lie in sections, one record a primitive; `section` is the first word of one.
+NormalRecord readNormals(uint section, uint primitive) {
+    uint word = section + primitive * kNormalWords;
+    return NormalRecord(attributeWord(word), attributeWord(word + 1u), attributeWord(word + 2u));
 }
+
+TangentRecord readTangents(uint section, uint primitive) {
+    uint word = section + primitive * kTangentWords;
+    return TangentRecord(attributeWord(word), attributeWord(word + 1u), attributeWord(word + 2u));
+}
+
+ColorRecord readColors(uint section, uint primitive) {
+    uint word = section + primitive * kColorWords;
+    return ColorRecord(attributeWord(word), attributeWord(word + 1u), attributeWord(word + 2u));
+}
+
+UvRecord readUvs(uint section, uint primitive) {
+    uint word = section + primitive * kUvWords;
+    return UvRecord(attributeWord(word), attributeWord(word + 1u));
+}
+
+vec4 tableWord(uint word) { return uintBitsToFloat(fetchTable(word)); }
 
 MaterialRecord readMaterial(uint tableOffset, uint index) {
     uint word = tableOffset + index * kMaterialWords;
-    return MaterialRecord(uintBitsToFloat(fetchTable(word)), uintBitsToFloat(fetchTable(word + 1u)));
+    return MaterialRecord(tableWord(word), tableWord(word + 1u), tableWord(word + 2u), tableWord(word + 3u),
+                          tableWord(word + 4u), tableWord(word + 5u), fetchTable(word + 6u), fetchTable(word + 7u));
+}
+
+TextureRecord readTexture(uint tableOffset, uint index) {
+    uint word = tableOffset + index * kTextureWords;
+    return TextureRecord(fetchTable(word), tableWord(word + 1u), tableWord(word + 2u));
 }
 
 LightRecord readLight(uint tableOffset, uint index) {

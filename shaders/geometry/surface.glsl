@@ -18,10 +18,12 @@ struct Surface {
     uint light; // or kNone
     uint id;
     bool planar; // a triangle: a ray that leaves it cannot meet it again
+    vec3 barycentric; // on a triangle
 };
 
 // Point, error bound and normals of a triangle hit. Barycentric coordinates are found anew for the one triangle.
-void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransform transform, inout Surface surface) {
+void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransform transform, uint normalSection,
+                     inout Surface surface) {
     vec3 p0 = primitive.p0Material.xyz;
     vec3 p1 = primitive.p1Light.xyz;
     vec3 p2 = primitive.p2Id.xyz;
@@ -34,8 +36,9 @@ void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransfor
     surface.front = dot(ray.direction, normal) <= 0.0;
     surface.facing = surface.front ? normal : -normal;
     surface.shading = surface.facing;
+    surface.barycentric = vec3(hit.b0, hit.b1, b2);
     if (kSmoothNormals) {
-        NormalRecord normals = readNormals(index);
+        NormalRecord normals = readNormals(normalSection, index);
         vec3 smoothNormal = hit.b0 * normals.n0.xyz + hit.b1 * normals.n1.xyz + b2 * normals.n2.xyz;
         float size = length(smoothNormal);
         if (size > 0.0) {
@@ -55,18 +58,19 @@ void sphereSurface(PrimitiveRecord primitive, Ray ray, float distance, inout Sur
     surface.front = dot(ray.direction, normal) <= 0.0;
     surface.facing = surface.front ? normal : -normal;
     surface.shading = surface.facing;
+    surface.barycentric = vec3(0.0);
 }
 
-Surface surfaceAt(uint index, Ray ray, RayTransform transform, float distance, bool spheres) {
+Surface surfaceAt(uint index, Ray ray, RayTransform transform, float distance, uint normalSection, bool spheres) {
     PrimitiveRecord primitive = readPrimitive(index);
     Surface surface;
     surface.material = floatBitsToUint(primitive.p0Material.w);
     surface.light = floatBitsToUint(primitive.p1Light.w);
     uint id = floatBitsToUint(primitive.p2Id.w);
-    surface.id = id & ~kSphereBit;
+    surface.id = id & kIdMask;
     surface.planar = !(spheres && (id & kSphereBit) != 0u);
     if (surface.planar) {
-        triangleSurface(primitive, index, ray, transform, surface);
+        triangleSurface(primitive, index, ray, transform, normalSection, surface);
     } else {
         sphereSurface(primitive, ray, distance, surface);
     }

@@ -11,6 +11,10 @@ layout(constant_id = 2) const uint kStackSize = 64u; // at least WideBvh::stackB
 layout(constant_id = 3) const bool kSpheres = true;
 layout(constant_id = 22) const bool kEveryPrimitive = false; // there is no BVH
 layout(constant_id = 24) const bool kTraversalCounts = false;
+layout(constant_id = 40) const bool kAlphaMask = true;
+layout(constant_id = 41) const bool kAlphaBlend = true;
+
+const bool kCutouts = kAlphaMask || kAlphaBlend; // some surfaces are not everywhere there
 
 uint stackItems[kStackSize];    // WideChild bits
 float stackEntries[kStackSize]; // distance at which the ray enters the item's box
@@ -30,9 +34,13 @@ const uint kAnyHit = 1u;
 struct Query {
     Ray ray;
     uint kind;
+    uint alphaKey;    // decides about surfaces that are there by chance
     uint ignored;     // the flat primitive the ray leaves: it cannot be hit again, whatever rounding says
     uint alsoIgnored; // the light a shadow ray ends at
 };
+
+// Whether the surface of a primitive with kAlphaBit is there, at barycentric coordinates of it; the kernel knows.
+bool surfaceIsThere(PrimitiveRecord primitive, uint index, vec3 barycentric, uint key);
 
 Traversal beginTraversal(float limit, uint nodeCount, uint primitiveCount) {
     stackItems[0] = 0u;
@@ -112,14 +120,20 @@ void testPrimitive(uint index, Query query, RayTransform transform, inout Traver
     PrimitiveRecord primitive = readPrimitive(index);
     if (kTraversalCounts) ++traversalTests.y;
     float distance;
+    vec3 barycentric = vec3(0.0);
     if (kSpheres && (floatBitsToUint(primitive.p2Id.w) & kSphereBit) != 0u) {
         distance = intersectSphere(primitive.p0Material.xyz, primitive.p1Light.x, query.ray.origin, query.ray.direction);
     } else {
-        distance = intersectTriangle(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
-                                     query.ray, transform).distance;
+        TriangleHit hit = intersectTriangle(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
+                                            query.ray, transform);
+        distance = hit.distance;
+        barycentric = vec3(hit.b0, hit.b1, 1.0 - hit.b0 - hit.b1);
     }
     bool ignored = index == query.ignored || index == query.alsoIgnored;
-    if (!ignored && distance > 0.0 && distance < state.distance) {
+    bool nearer = !ignored && distance > 0.0 && distance < state.distance;
+    if (kCutouts && nearer && (floatBitsToUint(primitive.p2Id.w) & kAlphaBit) != 0u)
+        nearer = surfaceIsThere(primitive, index, barycentric, query.alphaKey);
+    if (nearer) {
         state.distance = distance;
         state.primitive = index;
     }

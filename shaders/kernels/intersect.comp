@@ -12,9 +12,12 @@ layout(set = 0, binding = 13, std430) readonly buffer RayBuffer { RayRecord rays
 layout(set = 0, binding = 14, std430) buffer HitBuffer { HitRecord hits[]; };
 layout(push_constant) uniform Parameters { IntersectParameters parameters; };
 
+// Intersections alone are asked for: every surface is there.
+bool surfaceIsThere(PrimitiveRecord primitive, uint index, vec3 barycentric, uint key) { return true; }
+
 void trace(uint index) {
     RayRecord record = rays[index];
-    Query query = Query(Ray(record.originDistance.xyz, record.direction.xyz), kNearestHit, kNone, kNone);
+    Query query = Query(Ray(record.originDistance.xyz, record.direction.xyz), kNearestHit, 0u, kNone, kNone);
     RayTransform transform = transformFor(query.ray);
     Traversal state = beginTraversal(record.originDistance.w, 1u, 0u);
     uint overflows = 0u;

@@ -3,29 +3,24 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "kernels/path_state.glsl"
+#include "kernels/path_shading.glsl"
 #include "core/sample_sequence.glsl"
 #include "film/accumulate.glsl"
 #include "geometry/camera.glsl"
-#include "geometry/surface.glsl"
-#include "light/light.glsl"
-#include "material/lambertian.glsl"
 
-layout(constant_id = 6) const uint kRoulette = kRouletteThroughput;
 layout(constant_id = 7) const bool kPathSignatures = false;
 layout(constant_id = 12) const bool kAovs = false;
 layout(constant_id = 13) const uint kSampler = kSamplerIndependent;
 layout(constant_id = 14) const uint kIntegrator = kIntegratorPath;
-layout(constant_id = 15) const uint kLightSampling = kLightSamplingMis;
-layout(constant_id = 16) const bool kBalanceHeuristic = false;
-layout(constant_id = 18) const bool kAllLights = false;
 layout(constant_id = 19) const bool kBounceRange = false;
 layout(constant_id = 25) const bool kKeepSamples = false;
 
-const float kMaxSurvival = 1.0 - 1.0 / 1024.0; // host/scene/render_settings.h
+SampleIndex sampleIndex() {
+    return SampleIndex(render.imageSeed.zw, pixel, parameters.batch.x + path.sampleIndex, render.sampling.y);
+}
 
 uvec4 randomBlock(uint block) {
-    SampleIndex index = SampleIndex(render.imageSeed.zw, pixel, parameters.batch.x + path.sampleIndex, render.sampling.y);
+    SampleIndex index = sampleIndex();
     uvec4 words;
     if (kSampler == kSamplerSobol) {
         words = sobolBlock(index, block);
@@ -56,7 +51,12 @@ void beginSample() {
     path.ray = cameraRay(render, pixel, randomBlock(0u));
     path.leaves = kNone;
     path.lightsLeft = 0u;
-    path.point = ShadingPoint(vec3(0.0), vec3(0.0), vec3(0.0));
+    path.point = ShadingPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), lambertianBsdf(vec3(0.0)));
+    path.radianceScale = 1.0;
+    path.medium = kNone;
+    path.mediumBeyond = kNone;
+    path.beyond = vec3(0.0);
+    path.shadowBeyond = false;
     path.depth = 0u;
     path.pdf = 0.0;
     path.throughput = vec3(1.0);
@@ -86,14 +86,16 @@ float scatteringWeight(float pdf, float ofLight) {
     return kLightSampling == kLightSamplingLight ? 0.0 : misWeight(pdf, ofLight, kBalanceHeuristic);
 }
 
-void addEmission(Surface surface, MaterialRecord material, float distance) {
-    vec3 emission = material.emission.xyz;
-    if (emission != vec3(0.0) && (surface.front || material.emission.w != 0.0) && countsBounce(path.depth)) {
+void addEmission(Surface surface, MaterialRecord material, MapPoint at) {
+    vec3 emission = material.emissionFlags.xyz;
+    bool emits = surface.front || (floatBitsToUint(material.emissionFlags.w) & kMaterialTwoSided) != 0u;
+    if (emission != vec3(0.0) && emits && countsBounce(path.depth)) {
+        if (kEmissionMaps) emission *= emissionMapAt(material, at);
         float weight = 1.0;
-        if (kAreaLights && kLights != kLightsNone && path.depth > 0u && surface.light != kNone) {
+        if (kAreaLights && kLights != kLightsNone && path.pdf > 0.0 && surface.light != kNone) {
             LightRecord light = readLight(render.tableOffsets.y, surface.light);
             float cosine = abs(dot(path.ray.direction, surface.facing));
-            weight = scatteringWeight(path.pdf, areaLightPdf(light, path.ray.origin, distance, cosine));
+            weight = scatteringWeight(path.pdf, areaLightPdf(light, path.ray.origin, path.traversal.distance, cosine));
         }
         path.radiance += path.throughput * emission * weight;
     }
@@ -102,10 +104,18 @@ void addEmission(Surface surface, MaterialRecord material, float distance) {
 // What a ray that meets nothing sees.
 void addEnvironment() {
     if (kEnvironment && path.ray.direction.y > render.environmentLimits.x) {
-        bool onlyWay = path.depth == 0u || render.environment.w == 0.0;
-        float weight = onlyWay ? 1.0 : scatteringWeight(path.pdf, render.environment.w);
-        if (countsBounce(path.depth)) path.radiance += path.throughput * render.environment.xyz * weight;
-        if (path.depth == 0u) film.mean.w += 1.0;
+        vec3 radiance = render.environment.xyz;
+        float ofLight = render.environment.w;
+        if (kEnvironmentMap && render.environmentMap.z > 0u) {
+            EnvironmentMap map = environmentMap();
+            vec2 coordinates = mapCoordinates(map, path.ray.direction);
+            radiance *= mapRadiance(map, coordinates);
+            ofLight *= mapPdf(map, coordinates);
+        }
+        bool onlyWay = path.pdf == 0.0 || render.environment.w == 0.0;
+        float weight = onlyWay ? 1.0 : scatteringWeight(path.pdf, ofLight);
+        if (countsBounce(path.depth)) path.radiance += path.throughput * radiance * weight;
+        if (path.depth == 0u && maxComponent(radiance) > 0.0) film.mean.w += 1.0;
     }
 }
 
@@ -125,82 +135,18 @@ void clearAovs() {
     aovs[lane].primitiveId = uvec4[4](uvec4(kNone), uvec4(kNone), uvec4(kNone), uvec4(kNone));
 }
 
-// The light that sample `index` of a shading point goes to.
-uint lightOfSample(uint index, uvec4 random) {
-    uint areaSamples = render.lightSamples.y * render.lightSamples.z;
-    uint light;
-    if (kAllLights) {
-        light = index < areaSamples ? index / render.lightSamples.y
-                                    : render.lightSamples.z + min(index - areaSamples, render.lightSamples.w);
-    } else {
-        light = chooseLight(render.tableOffsets.z, render.depthLights.z, random.x, random.y);
-    }
-    if (light >= render.depthLights.w) film.faults.z += 1u;
-    return min(light, render.depthLights.w - 1u);
-}
-
-// The random block of a light sample; the path has scattered already.
-uint blockOfLightSample(uint index) {
-    uint bounce = path.depth - 1u;
-    return index == 0u ? 1u + 2u * bounce : 0x80000000u | ((bounce * render.lightSamples.x + index) & 0x7FFFFFFFu);
-}
-
-// Samples a light and leaves a pending shadow ray in the path if it could contribute. Its limit; 0 without one.
-float sampleDirect(ShadingPoint point, uint index) {
-    uvec4 random = randomBlock(blockOfLightSample(index));
-    LightSample light = sampleLight(readLight(render.tableOffsets.y, lightOfSample(index, random)), path.ray.origin,
-                                    vec2(unitReal(random.z), unitReal(random.w)));
-    bool lights = light.pdf > 0.0 && maxComponent(point.reflected) > 0.0;
-    float cosine = lights ? lambertianCosine(point.facing, point.shading, light.direction) : 0.0;
-    if (cosine > 0.0) {
-        bool onlyWay = light.delta || kLightSampling == kLightSamplingLight;
-        float weight = onlyWay ? 1.0 : misWeight(light.pdf, lambertianPdf(cosine), kBalanceHeuristic);
-        path.shadowRadiance = point.reflected * light.emission * (cosine / light.pdf * weight);
-        path.shadowDirection = light.way;
-        path.shadowPrimitive = light.primitive;
-    } else {
-        recordEvent(kSignatureNoRay);
-    }
-    return cosine > 0.0 ? light.limit : 0.0;
-}
-
-// Whether roulette lets the path live; it then stands for those that were ended.
-bool survivesRoulette(uint word) {
-    float survival = kRoulette == kRouletteConstant ? render.methods.z : min(maxComponent(path.throughput), kMaxSurvival);
-    bool survives = unitReal(word) < survival;
-    if (survives) path.throughput /= survival;
-    return survives;
-}
-
-// Chooses the next direction, unless the path ends here.
-uint scatter(Surface surface, vec3 baseColor) {
-    uvec4 random = randomBlock(2u + 2u * path.depth);
-    vec2 u = vec2(unitReal(random.x), unitReal(random.y));
-    float cosine;
-    if (kLightSampling == kLightSamplingHemisphere) {
-        path.ray.direction = uniformHemisphereSample(surface.shading, u, cosine);
-        path.pdf = 0.5 * kInvPi;
-        path.throughput *= baseColor * (2.0 * cosine);
-    } else {
-        path.ray.direction = lambertianSample(surface.shading, u, cosine);
-        path.pdf = lambertianPdf(cosine);
-        path.throughput *= baseColor;
-    }
-    ++path.depth;
-    uint ending = kGoesOn;
-    if (dot(path.ray.direction, surface.facing) <= 0.0 || maxComponent(path.throughput) <= 0.0) {
-        ending = kEnds;
-    } else if (kRoulette != kRouletteOff && path.depth >= render.depthLights.y && !survivesRoulette(random.z)) {
-        ending = kEndsByRoulette;
-    }
-    return ending;
-}
-
 void goOnOrEnd() {
-    if (path.ending == kGoesOn) {
+    uint ending = path.ending & kEndingMask;
+    uint lobe = path.ending >> kLobeShift;
+    if (!kLambertianOnly && lobe != 0u) recordEvent(lobe);
+    if (ending == kGoesOn) {
+        if (kGlass && lobe == kLobeGlassTransmits) {
+            path.ray.origin = path.beyond;
+            path.medium = path.mediumBeyond;
+        }
         beginNearest();
     } else {
-        if (path.ending == kEndsByRoulette) recordEvent(kSignatureRoulette);
+        if (ending == kEndsByRoulette) recordEvent(kSignatureRoulette);
         path.phase = kPhaseEnded;
     }
 }
@@ -220,6 +166,7 @@ void shadeFirstHit(Surface surface, vec3 albedo) {
         path.shadowRadiance = vec3(1.0);
         path.shadowPrimitive = kNone;
         path.ending = kEnds;
+        if (kGlass) path.shadowBeyond = false;
         if (dot(path.shadowDirection, surface.facing) > 0.0) {
             path.phase = kPhaseShadow;
             beginTraversalTo(render.methods.w);
@@ -230,10 +177,16 @@ void shadeFirstHit(Surface surface, vec3 albedo) {
 }
 
 // Prepares the light samples at a surface, and the ray that leaves it.
-void shadeBounce(Surface surface, vec3 baseColor, out ShadingPoint point) {
-    point = ShadingPoint(surface.facing, surface.shading, path.throughput * lambertianEval(baseColor));
-    path.ending = scatter(surface, baseColor);
+void shadeBounce(Surface surface, Bsdf bsdf, out ShadingPoint point) {
+    point.facing = surface.facing;
+    point.shading = surface.shading;
+    point.reflected = path.throughput * lambertianEval(bsdf.diffuse);
+    point.outgoing = -path.ray.direction;
+    point.throughput = path.throughput;
+    point.bsdf = bsdf;
+    path.ending = scatter(surface, bsdf);
     bool lit = kLights != kLightsNone && render.depthLights.w > 0u && countsBounce(path.depth);
+    if (!kLambertianOnly) lit = lit && scattersBroadly(bsdf);
     if (lit) {
         path.phase = kPhaseLights;
         path.lightsLeft = kLightLoop ? render.lightSamples.x : 1u;
@@ -242,25 +195,58 @@ void shadeBounce(Surface surface, vec3 baseColor, out ShadingPoint point) {
     }
 }
 
+// The hit point's two sides: where rays start, and the solids they are in.
+void leaveSurface(Surface surface, Bsdf bsdf) {
+    path.leaves = surface.planar ? path.traversal.primitive : kNone;
+    path.ray.origin = offsetOrigin(surface.position, surface.error, surface.facing);
+    if (kGlass) {
+        path.beyond = offsetOrigin(surface.position, surface.error, -surface.facing);
+        bool solid = kSolids && (bsdf.kind & kSolid) != 0u;
+        path.mediumBeyond = !solid ? path.medium : (surface.front ? surface.material : kNone);
+    }
+}
+
+// What solids absorb on the way to a hit.
+void absorb(Surface surface, Bsdf bsdf) {
+    if ((bsdf.kind & (kSolid | kInside)) == (kSolid | kInside)) path.medium = surface.material;
+    if (path.medium != kNone) path.throughput *= transmittance(path.medium, path.traversal.distance);
+}
+
 void shadeHit(RayTransform transform, inout ShadingPoint point) {
-    Surface surface = surfaceAt(path.traversal.primitive, path.ray, transform, path.traversal.distance, kSpheres);
+    Surface surface = surfaceAt(path.traversal.primitive, path.ray, transform, path.traversal.distance,
+                                render.attributeOffsets.x, kSpheres);
     recordEvent(surface.id);
     if (surface.material >= render.sceneCounts.z) film.faults.z += 1u;
-    MaterialRecord material = readMaterial(render.tableOffsets.x, min(surface.material, render.sceneCounts.z - 1u));
+    surface.material = min(surface.material, render.sceneCounts.z - 1u);
+    MaterialRecord material = readMaterial(render.tableOffsets.x, surface.material);
+    MapPoint at = mapPoint(path.traversal.primitive, surface.planar, surface.barycentric);
+    if (kNormalMaps && surface.planar && material.maps.z != kNone)
+        surface.shading = mappedNormal(surface, material, at);
+    vec3 base = baseColorAt(material, at).rgb;
     if (path.depth == 0u) {
         film.mean.w += 1.0;
-        if (kAovs) recordFirstHit(surface, material.baseColor.xyz);
+        if (kAovs) recordFirstHit(surface, base);
     }
-    if (kIntegrator == kIntegratorPath) addEmission(surface, material, path.traversal.distance);
-    if (kIntegrator == kIntegratorPath && path.depth >= render.depthLights.x) {
+    float cosine = abs(dot(path.ray.direction, surface.shading));
+    Bsdf bsdf = bsdfAt(material, at, base, cosine, surface.front);
+    bool ends = false;
+    if (kIntegrator == kIntegratorPath) {
+        if (kSolids && kAbsorption) absorb(surface, bsdf);
+        addEmission(surface, material, at);
+        ends = path.depth >= render.depthLights.x;
+        if (kUnlit && (floatBitsToUint(material.emissionFlags.w) & kMaterialUnlit) != 0u) {
+            if (countsBounce(path.depth)) path.radiance += path.throughput * base;
+            ends = true;
+        }
+    }
+    if (ends) {
         path.phase = kPhaseEnded;
     } else {
-        path.leaves = surface.planar ? path.traversal.primitive : kNone;
-        path.ray.origin = offsetOrigin(surface.position, surface.error, surface.facing);
+        leaveSurface(surface, bsdf);
         if (kIntegrator == kIntegratorPath) {
-            shadeBounce(surface, material.baseColor.xyz, point);
+            shadeBounce(surface, bsdf, point);
         } else {
-            shadeFirstHit(surface, material.baseColor.xyz);
+            shadeFirstHit(surface, base);
         }
     }
 }
@@ -293,6 +279,14 @@ void finishShadow() {
     finishLightSample();
 }
 
+// The key of alpha for the ray that is followed now.
+uint alphaKey(bool shadow) {
+    uint index = kLightLoop ? render.lightSamples.x - path.lightsLeft - 1u : 0u;
+    uint ofShadow = kIntegrator == kIntegratorAmbient ? 1u : blockOfLightSample(index);
+    uint block = shadow ? ofShadow : 2u * path.depth;
+    return independentBlock(sampleIndex(), kAlphaBlocks ^ block).x;
+}
+
 // The pending shadow ray and then the ray to the nearest hit, or as much of them as the budget allows. Whether that hit, or
 // that there is none, is found. A loop with little in it: drivers without branches run all of its body for every ray.
 bool traceRays(inout uint budget, out RayTransform transform) {
@@ -301,8 +295,10 @@ bool traceRays(inout uint budget, out RayTransform transform) {
         --budget;
         bool shadow = path.phase == kPhaseShadow;
         Query query;
-        query.ray = Ray(path.ray.origin, shadow ? path.shadowDirection : path.ray.direction);
+        vec3 origin = kGlass && shadow && path.shadowBeyond ? path.beyond : path.ray.origin;
+        query.ray = Ray(origin, shadow ? path.shadowDirection : path.ray.direction);
         query.kind = shadow ? kAnyHit : kNearestHit;
+        query.alphaKey = kAlphaBlend ? alphaKey(shadow) : 0u;
         query.ignored = path.leaves;
         query.alsoIgnored = shadow ? path.shadowPrimitive : kNone;
         transform = transformFor(query.ray);

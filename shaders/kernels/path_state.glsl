@@ -4,6 +4,7 @@
 
 #include "kernels/scene_bindings.glsl"
 #include "geometry/traverse.glsl"
+#include "material/bsdf.glsl"
 #include "shared/path_records.h"
 
 layout(constant_id = 17) const bool kLightLoop = false; // several light samples a shading point
@@ -22,7 +23,10 @@ layout(push_constant) uniform Parameters { DispatchParameters parameters; };
 struct ShadingPoint {
     vec3 facing;
     vec3 shading;
-    vec3 reflected; // the path's throughput there times the reflectance
+    vec3 reflected;  // the path's throughput there times the diffuse lobe's f
+    vec3 outgoing;   // to where the path came from
+    vec3 throughput; // the path's
+    Bsdf bsdf;
 };
 
 // A path in registers: PathRecord by names.
@@ -30,7 +34,7 @@ struct Path {
     uint phase;
     uint sampleIndex; // within the batch
     uint depth;
-    uint ending; // kGoesOn, kEnds, kEndsByRoulette: what follows the pending shadow ray
+    uint ending; // kGoesOn, kEnds, kEndsByRoulette: what follows the pending shadow ray; above, the lobe that scattered
     Ray ray;     // the next ray to the nearest hit; its origin is the shadow ray's too
     uint leaves; // flat primitive it starts from, or kNone
     float pdf;   // of its direction, in solid angle
@@ -42,12 +46,44 @@ struct Path {
     vec3 shadowRadiance;
     uint lightsLeft; // light samples still to be taken at the point below
     ShadingPoint point;
+    float radianceScale; // what refractions have divided the throughput by
+    uint medium;         // material of the solid that the ray is in, or kNone
+    uint mediumBeyond;   // of what lies behind the surface of a shading point
+    vec3 beyond;         // where rays start that go there
+    bool shadowBeyond;   // the shadow ray is one of them
     Traversal traversal;
 };
 
 uvec2 pixel;
 FilmRecord film;
 Path path;
+
+void loadPoint(PathRecord record) {
+    path.point.facing = record.pointFacing.xyz;
+    path.point.shading = record.pointShading.xyz;
+    path.point.reflected = record.pointReflected.xyz;
+    if (!kLambertianOnly) {
+        path.point.outgoing = record.pointOutgoing.xyz;
+        path.point.throughput = record.pointThroughput.xyz;
+        path.point.bsdf = Bsdf(vec3(0.0), record.pointF0.xyz, record.pointTint.xyz, record.pointShading.w,
+                               record.pointReflected.w, record.pointOutgoing.w, record.pointThroughput.w,
+                               record.pointF0.w, record.pointFacing.w, record.pointTint.w, record.pointMedia.x);
+    }
+}
+
+void storePoint(uint lane) {
+    ShadingPoint point = path.point;
+    paths[lane].pointFacing = vec4(point.facing, point.bsdf.alpha);
+    paths[lane].pointShading = vec4(point.shading, point.bsdf.f90);
+    paths[lane].pointReflected = vec4(point.reflected, point.bsdf.boost);
+    if (!kLambertianOnly) {
+        paths[lane].pointOutgoing = vec4(point.outgoing, point.bsdf.specular);
+        paths[lane].pointThroughput = vec4(point.throughput, point.bsdf.glass);
+        paths[lane].pointF0 = vec4(point.bsdf.f0, point.bsdf.gain);
+        paths[lane].pointTint = vec4(point.bsdf.tint, point.bsdf.eta);
+        paths[lane].pointMedia.x = point.bsdf.kind;
+    }
+}
 
 void loadPath(uint lane) {
     PathRecord record = paths[lane];
@@ -66,8 +102,14 @@ void loadPath(uint lane) {
     path.shadowRadiance = record.shadowRadiance.xyz;
     path.traversal = Traversal(record.directionDistance.w, record.progress.z, record.progress.w);
     path.lightsLeft = record.bounce.w;
-    if (kLightLoop)
-        path.point = ShadingPoint(record.pointFacing.xyz, record.pointShading.xyz, record.pointReflected.xyz);
+    path.radianceScale = record.throughput.w;
+    path.medium = floatBitsToUint(record.radiance.w);
+    if (kGlass) {
+        path.mediumBeyond = record.pointMedia.z;
+        path.beyond = record.pointBeyond.xyz;
+        path.shadowBeyond = record.ignored.z != 0u;
+    }
+    if (kLightLoop) loadPoint(record);
     uint entries = kEveryPrimitive ? 0u : path.traversal.stackCount;
     for (uint i = 0u; i < entries; ++i) {
         uvec2 entry = stacks[lane * kStackSize + i];
@@ -77,13 +119,20 @@ void loadPath(uint lane) {
 }
 
 void storePath(uint lane) {
-    paths[lane] = PathRecord(vec4(path.ray.origin, path.pdf), vec4(path.ray.direction, path.traversal.distance),
-                             vec4(path.throughput, 0.0), vec4(path.radiance, 0.0), vec4(path.shadowDirection, 0.0),
-                             vec4(path.shadowRadiance, 0.0), vec4(path.point.facing, 0.0),
-                             vec4(path.point.shading, 0.0), vec4(path.point.reflected, 0.0),
-                             uvec4(path.phase, path.sampleIndex, path.traversal.primitive, path.traversal.stackCount),
-                             uvec4(path.depth, path.ending, path.signature, path.lightsLeft),
-                             uvec4(path.leaves, path.shadowPrimitive, 0u, 0u));
+    paths[lane].originPdf = vec4(path.ray.origin, path.pdf);
+    paths[lane].directionDistance = vec4(path.ray.direction, path.traversal.distance);
+    paths[lane].throughput = vec4(path.throughput, path.radianceScale);
+    paths[lane].radiance = vec4(path.radiance, uintBitsToFloat(path.medium));
+    paths[lane].shadowDirection = vec4(path.shadowDirection, 0.0);
+    paths[lane].shadowRadiance = vec4(path.shadowRadiance, 0.0);
+    paths[lane].progress = uvec4(path.phase, path.sampleIndex, path.traversal.primitive, path.traversal.stackCount);
+    paths[lane].bounce = uvec4(path.depth, path.ending, path.signature, path.lightsLeft);
+    paths[lane].ignored = uvec4(path.leaves, path.shadowPrimitive, kGlass && path.shadowBeyond ? 1u : 0u, 0u);
+    if (kGlass) {
+        paths[lane].pointMedia.z = path.mediumBeyond;
+        paths[lane].pointBeyond = vec4(path.beyond, 0.0);
+    }
+    if (kLightLoop) storePoint(lane);
     uint entries = kEveryPrimitive || path.phase == kPhaseDone ? 0u : path.traversal.stackCount;
     for (uint i = 0u; i < entries; ++i)
         stacks[lane * kStackSize + i] = uvec2(stackItems[i], floatBitsToUint(stackEntries[i]));

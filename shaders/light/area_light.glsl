@@ -37,6 +37,7 @@ LightSample sampleTriangle(LightRecord light, vec3 from, vec2 u) {
     // An area that float cannot hold belongs to a triangle that no ray can hit either.
     result.pdf = emits && light.p2Area.w > 0.0 ? trianglePdf(light.p1Samples.w, light.p2Area.w, distanceSquared, abs(cosine)) : 0.0;
     result.way = offsetOrigin(point, error, cosine > 0.0 ? normal : -normal) - from;
+    result.place = vec2(b0, b1);
     return result;
 }
 
@@ -103,6 +104,7 @@ LightSample sampleAreaLight(LightRecord light, vec3 from, vec2 u) {
     }
     result.limit = 1.0;
     result.emission = light.emissionKind.xyz;
+    result.mapped = (floatBitsToUint(light.emissionKind.w) & (kLightMappedBit | kLightCoverageBit)) != 0u;
     result.primitive = floatBitsToUint(light.p0Primitive.w);
     result.delta = false;
     return result;

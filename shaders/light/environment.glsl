@@ -18,6 +18,7 @@ LightSample sampleEnvironment(LightRecord light, vec2 u) {
     result.emission = light.emissionKind.xyz;
     result.delta = false;
     result.primitive = kNone;
+    result.mapped = false;
     return result;
 }
 

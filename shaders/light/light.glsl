@@ -4,6 +4,7 @@
 
 #include "light/area_light.glsl"
 #include "light/environment.glsl"
+#include "light/environment_map.glsl"
 #include "light/punctual_light.glsl"
 #include "shared/interface.h"
 
@@ -11,6 +12,7 @@ layout(constant_id = 4) const uint kLights = kLightsMany;
 layout(constant_id = 9) const bool kAreaLights = true;
 layout(constant_id = 10) const bool kPunctualLights = true;
 layout(constant_id = 11) const bool kEnvironment = true;
+layout(constant_id = 26) const bool kEnvironmentMap = true; // instead of a constant one
 
 uint chooseLight(uint binOffset, uint bits, uint binWord, uint aliasWord) {
     uint light = 0u;

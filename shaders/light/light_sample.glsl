@@ -11,6 +11,8 @@ struct LightSample {
     float pdf;      // solid angle, times the samples expected of the light; of delta lights those alone. 0: nothing arrives
     vec3 emission;  // radiance; of delta lights what a surface that faces them receives
     bool delta;     // scattering can never find it
+    bool mapped;    // emission is to be multiplied by what the material's maps say at the place below
+    vec2 place;     // first two barycentric coordinates on a triangle
     uint primitive; // a convex emitter cannot hide the point of it that is seen, so the shadow ray ignores it; or kNone
 };
 

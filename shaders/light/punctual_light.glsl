@@ -31,6 +31,7 @@ LightSample samplePunctualLight(LightRecord light, vec3 from) {
     result.pdf = share > 0.0 && (directional || distanceSquared > 0.0) ? light.p1Samples.w : 0.0;
     result.delta = true;
     result.primitive = kNone;
+    result.mapped = false;
     return result;
 }
 

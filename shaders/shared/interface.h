@@ -9,7 +9,7 @@ ISOLUX_SHARED_BEGIN
 // Scene data is bound twice, as texel and as storage buffers; kSpecTexelBuffers says which are read.
 ISOLUX_CONSTANT uint kBindNodes = 0u;
 ISOLUX_CONSTANT uint kBindPrimitives = 1u;
-ISOLUX_CONSTANT uint kBindNormals = 2u;
+ISOLUX_CONSTANT uint kBindAttributes = 2u;
 ISOLUX_CONSTANT uint kBindTables = 3u;
 ISOLUX_CONSTANT uint kBindTexelOffset = 4u; // texel version: the same number plus this
 ISOLUX_CONSTANT uint kBindRender = 8u;
@@ -49,6 +49,23 @@ ISOLUX_CONSTANT uint kSpecEveryPrimitive = 22u; // no BVH
 ISOLUX_CONSTANT uint kSpecMollerTrumbore = 23u;
 ISOLUX_CONSTANT uint kSpecTraversalCounts = 24u;
 ISOLUX_CONSTANT uint kSpecKeepSamples = 25u; // each sample's radiance goes to kBindSamples
+ISOLUX_CONSTANT uint kSpecEnvironmentMap = 26u;
+ISOLUX_CONSTANT uint kSpecSpecular = 27u;
+ISOLUX_CONSTANT uint kSpecRoughSpecular = 28u;
+ISOLUX_CONSTANT uint kSpecGlass = 29u;
+ISOLUX_CONSTANT uint kSpecRoughGlass = 30u;
+ISOLUX_CONSTANT uint kSpecSolids = 31u;
+ISOLUX_CONSTANT uint kSpecAbsorption = 32u;
+ISOLUX_CONSTANT uint kSpecBaseColorMaps = 33u;
+ISOLUX_CONSTANT uint kSpecMetallicRoughnessMaps = 34u;
+ISOLUX_CONSTANT uint kSpecNormalMaps = 35u;
+ISOLUX_CONSTANT uint kSpecEmissionMaps = 36u;
+ISOLUX_CONSTANT uint kSpecTransmissionMaps = 37u; // and of thickness
+ISOLUX_CONSTANT uint kSpecSpecularMaps = 38u;
+ISOLUX_CONSTANT uint kSpecVertexColors = 39u;
+ISOLUX_CONSTANT uint kSpecAlphaMask = 40u;
+ISOLUX_CONSTANT uint kSpecAlphaBlend = 41u;
+ISOLUX_CONSTANT uint kSpecUnlit = 42u;
 
 ISOLUX_CONSTANT uint kLightsNone = 0u;
 ISOLUX_CONSTANT uint kLightsOne = 1u;

@@ -10,18 +10,24 @@ ISOLUX_SHARED_BEGIN
 struct PathRecord {
     vec4 originPdf;         // origin of the next ray; w: pdf of its direction (solid angle)
     vec4 directionDistance; // its direction; w: nearest distance found so far by an unfinished traversal
-    vec4 throughput;        // w unused
-    vec4 radiance;          // w unused
+    vec4 throughput;        // w: product of the relative indices of refraction squared, which radiance was divided by
+    vec4 radiance;          // w: material of the solid the path is in, or kNone, as bits
     vec4 shadowDirection;   // from the origin to the light's point, or towards a light at infinity; w unused
     vec4 shadowRadiance;    // what arrives if nothing is in between; w unused
-    vec4 pointFacing;       // the point whose lights are being sampled, if there are several samples: normals,
+    vec4 pointFacing;       // the point whose lights are being sampled, if there are several samples: ShadingPoint
     vec4 pointShading;
-    vec4 pointReflected; // throughput times reflectance
-    uvec4 progress;      // phase, sample within the batch, nearest primitive found so far, entries on the stack
-    uvec4 bounce;        // bounces so far, ending, path signature, light samples still to be taken
-    uvec4 ignored;       // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
+    vec4 pointReflected;
+    vec4 pointOutgoing;
+    vec4 pointThroughput;
+    vec4 pointF0;
+    vec4 pointTint;
+    vec4 pointBeyond;
+    uvec4 pointMedia;
+    uvec4 progress; // phase, sample within the batch, nearest primitive found so far, entries on the stack
+    uvec4 bounce;   // bounces so far, ending and lobe, path signature, light samples still to be taken
+    uvec4 ignored;  // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
 };
-ISOLUX_CHECK_SIZE(PathRecord, 192);
+ISOLUX_CHECK_SIZE(PathRecord, 288);
 
 // Statistics of one batch of samples of one pixel.
 struct FilmRecord {
@@ -58,17 +64,21 @@ struct RenderParameters {
     vec4 lensRight;      // unit, as cameraRight and cameraUp are not
     vec4 lensUp;
     vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it
-    vec4 environmentLimits; // x: it emits from directions with y above this alone; y, z, w unused
+    vec4 environmentLimits; // x: it emits from directions with y above this alone; y: rotation of the map in turns
+    uvec4 environmentMap;   // first word of its texels and of the bins of its cells, width, height
     uvec4 imageSeed;        // width, height, seed low, seed high
     vec4 methods;      // radius of the lens, 1/focus distance, roulette's constant survival, reach of ambient occluders
     uvec4 depthLights; // last bounce, roulette start, bits of the alias table, number of lights
     uvec4
         lightSamples; // samples a shading point; with kSpecAllLights: of each area light, area lights, punctual lights
-    uvec4 tableOffsets; // first word of materials, lights, light bins, filter quantiles in the tables buffer
-    uvec4 sceneCounts;  // nodes, primitives, materials; w unused
-    uvec4 sampling;     // x: first bounce that counts, y: cell bits of the sampler; z, w unused
+    uvec4 tableOffsets;     // first word of materials, lights, light bins, filter quantiles in the tables buffer
+    uvec4 textureOffsets;   // of texture records, of the decoding of 8-bit and of 16-bit sRGB, of albedo tables
+    uvec4 attributeOffsets; // of normals, tangents, colours, texture coordinates in the attributes buffer
+    uvec4 sceneCounts;      // nodes, primitives, materials; w unused
+    uvec4 sampling; // x: first bounce that counts, y: cell bits of the sampler, z: bits of the environment's cells; w
+                    // unused
 };
-ISOLUX_CHECK_SIZE(RenderParameters, 240);
+ISOLUX_CHECK_SIZE(RenderParameters, 288);
 
 // Changes with every dispatch.
 struct DispatchParameters {
@@ -94,6 +104,8 @@ ISOLUX_CONSTANT uint kPhaseDone = 4u;    // all samples of the batch are on the 
 ISOLUX_CONSTANT uint kGoesOn = 0u;
 ISOLUX_CONSTANT uint kEnds = 1u;
 ISOLUX_CONSTANT uint kEndsByRoulette = 2u;
+ISOLUX_CONSTANT uint kEndingMask = 3u;
+ISOLUX_CONSTANT uint kLobeShift = 2u; // above it: kLobe..., or 0 on a Lambertian surface
 
 ISOLUX_CONSTANT uint kSignatureStart = 2166136261u;
 ISOLUX_CONSTANT uint kSignatureFactor = 16777619u;
@@ -101,6 +113,12 @@ ISOLUX_CONSTANT uint kSignatureOccluded = 0u;
 ISOLUX_CONSTANT uint kSignatureReached = 1u;
 ISOLUX_CONSTANT uint kSignatureNoRay = 2u;
 ISOLUX_CONSTANT uint kSignatureRoulette = 3u;
+
+// Which lobe scattered; a word of the signature too.
+ISOLUX_CONSTANT uint kLobeDiffuse = 4u;
+ISOLUX_CONSTANT uint kLobeSpecular = 5u;
+ISOLUX_CONSTANT uint kLobeGlassReflects = 6u;
+ISOLUX_CONSTANT uint kLobeGlassTransmits = 7u;
 
 ISOLUX_SHARED_END
 

@@ -15,8 +15,8 @@ struct NodeRecord {
 };
 ISOLUX_CHECK_SIZE(NodeRecord, 64);
 
-// A triangle or a sphere. id has kSphereBit for spheres; its other bits are the primitive id of host/scene.
-// Sphere: p0 = centre, p1.x = radius.
+// A triangle or a sphere. id has kSphereBit for spheres and kAlphaBit where the surface is not everywhere there; its
+// other bits are the primitive id of host/scene. Sphere: p0 = centre, p1.x = radius.
 struct PrimitiveRecord {
     vec4 p0Material; // w: material index, as bits
     vec4 p1Light;    // w: light index or kNone, as bits
@@ -24,26 +24,60 @@ struct PrimitiveRecord {
 };
 ISOLUX_CHECK_SIZE(PrimitiveRecord, 48);
 
-// Vertex normals of a triangle; zero where the mesh is flat.
-struct NormalRecord {
+// Attributes of a triangle's three vertices, each kind in a section of its own, if the scene needs it.
+struct NormalRecord { // zero where the mesh is flat
     vec4 n0;
     vec4 n1;
     vec4 n2;
 };
 ISOLUX_CHECK_SIZE(NormalRecord, 48);
 
-struct MaterialRecord {
-    vec4 baseColor; // w unused
-    vec4 emission;  // w: 1 if the back face emits too
+struct TangentRecord { // world space, of any length; w of the first: sign of the bitangent
+    vec4 t0;
+    vec4 t1;
+    vec4 t2;
 };
-ISOLUX_CHECK_SIZE(MaterialRecord, 32);
+ISOLUX_CHECK_SIZE(TangentRecord, 48);
+
+struct ColorRecord { // linear, alpha in w
+    vec4 c0;
+    vec4 c1;
+    vec4 c2;
+};
+ISOLUX_CHECK_SIZE(ColorRecord, 48);
+
+struct UvRecord { // one set of texture coordinates
+    vec4 uv0Uv1;
+    vec4 uv2; // z, w unused
+};
+ISOLUX_CHECK_SIZE(UvRecord, 32);
+
+struct MaterialRecord {
+    vec4 baseColorAlpha;
+    vec4 emissionFlags; // w: kMaterial... bits, as bits
+    vec4 surface;       // metallic, roughness, index of refraction, alpha cutoff
+    vec4 specular;      // rgb: colour; w: factor
+    vec4 glass;         // transmission, thickness, scale of the normal map; w unused
+    vec4 absorption;    // rgb: per unit of device space; w unused
+    uvec4 maps;         // texture records of base colour, metallic-roughness, normal, emission; or kNone
+    uvec4 moreMaps;     // of transmission, thickness, specular, specular colour
+};
+ISOLUX_CHECK_SIZE(MaterialRecord, 128);
+
+// A texture as a material uses it.
+struct TextureRecord {
+    uvec4 image;     // first word of its texels, width, height, kTexture... bits
+    vec4 uvFromMesh; // a matrix by columns
+    vec4 offset;     // x, y; z, w unused
+};
+ISOLUX_CHECK_SIZE(TextureRecord, 48);
 
 // One light, complete, so that sampling it touches nothing else. What the words hold besides:
 //   triangle      its corners and area
 //   sphere        p0 = centre, p1.x = radius
 //   point, spot   p0 = position, p1 = direction, p2.x = 1 - cosOuter, p2.y = 1 / (cosInner - cosOuter)
 //   directional   p1 = direction in which the light travels
-//   environment   p2.x = 1 - y of the lowest direction that emits
+//   environment   p2.x = 1 - y of the lowest direction that emits, if it is constant
 struct LightRecord {
     vec4 p0Primitive;  // w: index of its PrimitiveRecord or kNone, as bits
     vec4 p1Samples;    // w: expected number of samples of this light at a shading point
@@ -52,7 +86,7 @@ struct LightRecord {
 };
 ISOLUX_CHECK_SIZE(LightRecord, 64);
 
-// One bin of the alias table (host/scene/alias_table.h).
+// One bin of an alias table (host/scene/alias_table.h): of lights, or of an environment map's cells.
 struct LightBinRecord {
     uvec4 thresholdAlias; // x: threshold, y: alias; z, w unused
 };
@@ -66,6 +100,8 @@ ISOLUX_CHECK_SIZE(FilterCellsRecord, 16);
 
 ISOLUX_CONSTANT uint kNone = 0xFFFFFFFFu;
 ISOLUX_CONSTANT uint kSphereBit = 0x80000000u;
+ISOLUX_CONSTANT uint kAlphaBit = 0x40000000u;
+ISOLUX_CONSTANT uint kIdMask = 0x3FFFFFFFu;
 
 ISOLUX_CONSTANT uint kLightTriangle = 0u;
 ISOLUX_CONSTANT uint kLightSphere = 1u;
@@ -75,12 +111,41 @@ ISOLUX_CONSTANT uint kLightDirectional = 4u;
 ISOLUX_CONSTANT uint kLightEnvironment = 5u;
 ISOLUX_CONSTANT uint kLightKindMask = 0xFFu;
 ISOLUX_CONSTANT uint kLightTwoSidedBit = 0x100u; // the back face emits too
+ISOLUX_CONSTANT uint kLightMappedBit = 0x200u;   // emission has a map
+ISOLUX_CONSTANT uint kLightCoverageBit = 0x400u; // the surface is not everywhere there
+
+ISOLUX_CONSTANT uint kMaterialTwoSided = 1u; // the back face emits too
+ISOLUX_CONSTANT uint kMaterialMask = 2u;
+ISOLUX_CONSTANT uint kMaterialBlend = 4u;
+ISOLUX_CONSTANT uint kMaterialUnlit = 8u;
+
+ISOLUX_CONSTANT uint kTextureWrapMask = 3u;   // of u; host/scene's TextureWrap
+ISOLUX_CONSTANT uint kTextureWrapVShift = 2u; // of v
+ISOLUX_CONSTANT uint kTextureLinearBit = 16u; // bilinear
+ISOLUX_CONSTANT uint kTexture16Bit = 32u;     // two words a texel, else one
+ISOLUX_CONSTANT uint kTextureUvShift = 8u;    // which section of texture coordinates
+ISOLUX_CONSTANT uint kWrapRepeat = 0u;
+ISOLUX_CONSTANT uint kWrapMirrored = 1u;
+ISOLUX_CONSTANT uint kWrapClamp = 2u;
+
+// Albedo tables (host/scene/albedo_tables.h), a word for each node: its value, the next angle's, and both of the next
+// roughness.
+ISOLUX_CONSTANT uint kReflectionAngles = 64u;
+ISOLUX_CONSTANT uint kReflectionRoughnesses = 32u;
+ISOLUX_CONSTANT uint kFresnelTableAngles = 32u;
+ISOLUX_CONSTANT uint kGlassTableAngles = 16u;
+ISOLUX_CONSTANT uint kGlassTableRoughnesses = 16u;
+ISOLUX_CONSTANT uint kGlassTableIndices = 16u;
 
 // Words (of 16 bytes) a record.
 ISOLUX_CONSTANT uint kNodeWords = 4u;
 ISOLUX_CONSTANT uint kPrimitiveWords = 3u;
 ISOLUX_CONSTANT uint kNormalWords = 3u;
-ISOLUX_CONSTANT uint kMaterialWords = 2u;
+ISOLUX_CONSTANT uint kTangentWords = 3u;
+ISOLUX_CONSTANT uint kColorWords = 3u;
+ISOLUX_CONSTANT uint kUvWords = 2u;
+ISOLUX_CONSTANT uint kMaterialWords = 8u;
+ISOLUX_CONSTANT uint kTextureWords = 3u;
 ISOLUX_CONSTANT uint kLightWords = 4u;
 ISOLUX_CONSTANT uint kFilterCells = 256u;
 

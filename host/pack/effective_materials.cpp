@@ -1,0 +1,117 @@
+#include "pack/effective_materials.h"
+
+#include "scene/textures.h"
+
+#include <algorithm>
+
+namespace isolux {
+namespace {
+
+Vec3d rgb(const glm::dvec4& value) { return {value.r, value.g, value.b}; }
+
+/// Multiplies what a constant map says into the factors of its slot.
+void fold(Material& material, MapSlot slot, const glm::dvec4& value) {
+    switch (slot) {
+    case MapSlot::baseColor:
+        material.baseColor *= rgb(value);
+        material.alpha *= value.a;
+        break;
+    case MapSlot::metallicRoughness:
+        material.roughness *= value.g;
+        material.metallic *= value.b;
+        break;
+    case MapSlot::normal: break;
+    case MapSlot::emission: material.emission *= rgb(value); break;
+    case MapSlot::transmission: material.transmission *= value.r; break;
+    case MapSlot::thickness: material.thickness *= value.g; break;
+    case MapSlot::specular: material.specular *= value.a; break;
+    case MapSlot::specularColor: material.specularColor *= rgb(value); break;
+    }
+}
+
+/// Whether the factors leave a map nothing to say.
+bool isIdle(const Material& material, MapSlot slot) {
+    switch (slot) {
+    case MapSlot::baseColor: return material.baseColor == Vec3d(0.0) && material.alphaMode == AlphaMode::opaque;
+    case MapSlot::metallicRoughness:
+        return material.unlit || (material.metallic == 0.0 && material.specular == 0.0 && material.transmission == 0.0);
+    case MapSlot::normal: return material.unlit || material.normalScale == 0.0;
+    case MapSlot::emission: return !material.emits();
+    case MapSlot::transmission: return material.unlit || material.transmission == 0.0;
+    case MapSlot::thickness: return material.unlit || material.transmission == 0.0 || material.thickness == 0.0;
+    case MapSlot::specular: return material.unlit || material.specular == 0.0;
+    case MapSlot::specularColor:
+        return material.unlit || material.specular == 0.0 || material.specularColor == Vec3d(0.0);
+    }
+    return false;
+}
+
+void simplifyMap(const Scene& scene, Material& material, MapSlot slot) {
+    TextureMap& map = material.maps[static_cast<std::size_t>(slot)];
+    if (!map.present()) return;
+    if (isIdle(material, slot)) {
+        map.texture = kNoTexture;
+        return;
+    }
+    const std::optional<glm::dvec4> constant = constantValue(scene, map, slot);
+    const bool absent = constant && (slot != MapSlot::normal || isFlatNormal(*constant));
+    if (!absent) return;
+    fold(material, slot, *constant);
+    map.texture = kNoTexture;
+}
+
+/// The least alpha that vertices of a material's meshes have.
+std::vector<double> leastVertexAlpha(const Scene& scene) {
+    std::vector<double> least(scene.materials.size(), 1.0);
+    for (const Mesh& mesh : scene.meshes)
+        for (const glm::vec4& color : mesh.colors)
+            least[mesh.material] = std::min(least[mesh.material], static_cast<double>(color.a));
+    return least;
+}
+
+/// No filter makes alpha less than the least that is stored.
+bool neverHides(const Scene& scene, const Material& material, double vertexAlpha) {
+    const TextureMap& map = material.map(MapSlot::baseColor);
+    const double ofMap = map.present() ? leastAlpha(scene.images[scene.textures[map.texture].image]) : 1.0;
+    const double least = material.alpha * ofMap * vertexAlpha;
+    return material.alphaMode == AlphaMode::mask ? least >= material.alphaCutoff : least >= 1.0;
+}
+
+template <typename Visit> void forEachPlacedMesh(const Scene& scene, const Visit& visit) {
+    for (const Instance& instance : scene.instances) visit(scene.meshes[instance.mesh]);
+}
+
+} // namespace
+
+std::vector<Material> effectiveMaterials(const Scene& scene) {
+    const std::vector<double> vertexAlpha = leastVertexAlpha(scene);
+    std::vector<Material> materials = scene.materials;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        Material& material = materials[i];
+        if (material.alphaMode != AlphaMode::opaque && neverHides(scene, material, vertexAlpha[i]))
+            material.alphaMode = AlphaMode::opaque;
+        // Twice: what one map says may leave another nothing to say.
+        for (int pass = 0; pass < 2; ++pass)
+            for (std::size_t slot = 0; slot < kMapSlots; ++slot)
+                simplifyMap(scene, material, static_cast<MapSlot>(slot));
+    }
+    return materials;
+}
+
+std::vector<bool> materialsInUse(const Scene& scene) {
+    std::vector<bool> used(scene.materials.size(), false);
+    forEachPlacedMesh(scene, [&](const Mesh& mesh) { used[mesh.material] = true; });
+    for (const Sphere& sphere : scene.spheres) used[sphere.material] = true;
+    return used;
+}
+
+bool hasVertexColors(const Scene& scene) {
+    bool found = false;
+    forEachPlacedMesh(scene, [&](const Mesh& mesh) {
+        found = found || std::any_of(mesh.colors.begin(), mesh.colors.end(),
+                                     [](const glm::vec4& color) { return color != glm::vec4(1.0f); });
+    });
+    return found;
+}
+
+} // namespace isolux

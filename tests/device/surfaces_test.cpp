@@ -1,0 +1,56 @@
+// Every part of the surface model, the device against the double reference on the same random numbers.
+#include "device/paired_fixture.h"
+#include "support/materials.h"
+#include "support/methods.h"
+
+#include <set>
+
+namespace isolux::test {
+namespace {
+
+RenderSettings smallImage(std::uint32_t samples) {
+    return workShare() < 1.0 ? imageSettings(24, 24, samples) : imageSettings(64, 64, samples);
+}
+
+class Surfaces : public Paired, public ::testing::WithParamInterface<SurfaceCase> {};
+
+/// Mirrors, lenses and bumps magnify rounding from bounce to bounce: fewer pixels agree to 1e-3, each explained.
+TEST_P(Surfaces, AgreeWithTheReference) {
+    validate(GetParam().scene);
+    expectAgreement(GetParam().scene, smallImage(20), 0.98);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Surfaces, ::testing::ValuesIn(surfaceCases()),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// Every way of finding light, where every lobe, map and light is.
+TEST_F(Paired, MethodsOnEverySurface) {
+    const std::set<std::string> methods{"Hemisphere", "Bsdf",   "LightSampling", "AllLightsThrice", "Sobol",
+                                        "Ambient",    "Albedo", "Normals",       "Stratified"};
+    const Scene scene = surfaceScene("Everything");
+    for (const Method& method : allMethods()) {
+        if (!methods.contains(method.name)) continue;
+        SCOPED_TRACE(method.name);
+        RenderSettings settings = smallImage(20);
+        method.apply(settings);
+        expectAgreement(scene, settings, 0.98);
+    }
+}
+
+/// What a path keeps of a rough surface, glass and the solid it is in outlives a dispatch.
+TEST_F(Paired, DispatchesChangeNoBitOnEverySurface) {
+    const Scene scene = surfaceScene("Everything");
+    RenderOptions options;
+    options.signatures = PathSignatures::on;
+    for (const std::uint32_t lightSamples : {1u, 3u}) {
+        RenderSettings settings = imageSettings(16, 12, 18);
+        settings.lightSamples = lightSamples;
+        options.dispatchSeconds = RenderOptions{}.dispatchSeconds;
+        const Film whole = render(scene, settings, options);
+        options.dispatchSeconds = 1e-6;
+        EXPECT_EQ(differingPixels(whole, render(scene, settings, options)), 0u) << lightSamples;
+    }
+}
+
+} // namespace
+} // namespace isolux::test
