@@ -2,6 +2,7 @@
 // seen from the point where rays leave the surface, the only one that sampled and traced rays share.
 #pragma once
 
+#include "reference/alpha.h"
 #include "reference/light_sample.h"
 #include "reference/surface.h"
 
@@ -10,18 +11,22 @@
 
 namespace isolux {
 
-/// Radiance that a material emits from one of its sides.
-template <typename Real> [[nodiscard]] Vec3<Real> emissionFrom(const Material& material, Side side) {
-    const bool emits = side == Side::front || material.doubleSided;
-    return emits ? Vec3<Real>(material.emission) : Vec3<Real>(0);
+/// Radiance that a point emits to one of its sides.
+template <typename Real>
+[[nodiscard]] Vec3<Real> emissionAt(const Attributes<Real>& attributes, const Place<Real>& place, Side side) {
+    const Material& material = attributes.materialAt(place);
+    const bool emits = material.emits() && (side == Side::front || material.doubleSided);
+    if (!emits) return Vec3<Real>(0);
+    return Vec3<Real>(material.emission) * Vec3<Real>(attributes.map(place, MapSlot::emission));
 }
 
 /// Samples one primitive at a time; densities do not include the choice of it. Keeps references.
 template <typename Real> class AreaLights {
 public:
-    AreaLights(const Scene& scene, const World<Real>& world) : scene_(scene), world_(world) {}
+    AreaLights(const Scene& scene, const World<Real>& world) : world_(world), attributes_(scene, world) {}
 
-    /// A point on the primitive; none if it does not emit towards `origin`.
+    /// A point on the primitive; none if it does not emit towards `origin`. Its emission is times its coverage, for
+    /// shadow rays pass through the light that they end at.
     [[nodiscard]] std::optional<LightSample<Real>> sample(const Vec3<Real>& origin, std::uint32_t primitive,
                                                           const Vec2<Real>& uv) const {
         if (world_.isTriangle(primitive)) return sampleTriangleLight(origin, primitive, sampleTriangle(uv.x, uv.y));
@@ -38,8 +43,9 @@ public:
     }
 
 private:
-    [[nodiscard]] const Material& materialOf(std::uint32_t primitive) const {
-        return scene_.materials[world_.materialOf(primitive)];
+    [[nodiscard]] Vec3<Real> coveredEmission(const Place<Real>& place, Side side) const {
+        const Vec3<Real> emission = emissionAt(attributes_, place, side);
+        return emission == Vec3<Real>(0) ? emission : coverageAt(attributes_, place) * emission;
     }
 
     /// The side of a sphere that a point sees. The same expression as the constant term of `intersectSphere`, so that
@@ -81,7 +87,7 @@ private:
         const Vec3<Real> wi = way / distance;
         const Real cosine = -glm::dot(wi, triangle.ng);
         const Side side = cosine > 0 ? Side::front : Side::back;
-        const Vec3<Real> emission = emissionFrom<Real>(materialOf(primitive), side);
+        const Vec3<Real> emission = coveredEmission({primitive, barycentric}, side);
         if (!(distance > 0) || cosine == 0 || emission == Vec3<Real>(0)) return std::nullopt;
         const Vec3<Real> facing = side == Side::front ? triangle.ng : -triangle.ng;
         return LightSample<Real>{wi, trianglePdf(primitive, distance, cosine), emission, rayTo(origin, point, facing),
@@ -104,7 +110,7 @@ private:
         const Real t = (distance - sphere.radius) * (distance + sphere.radius) / (distance * local.z + halfChord);
         const Vec3<Real> onSphere = t * wi - toCenter;
         const BoundedPoint<Real> point = pointOnSphere(sphere, onSphere);
-        return LightSample<Real>{wi, conePdf(height), emissionFrom<Real>(materialOf(primitive), Side::front),
+        return LightSample<Real>{wi, conePdf(height), coveredEmission({primitive}, Side::front),
                                  rayTo(origin, point, glm::normalize(onSphere)), primitive};
     }
 
@@ -116,14 +122,14 @@ private:
         const Real distance = glm::length(way);
         const Vec3<Real> wi = way / distance;
         const Real cosine = glm::dot(wi, normal);
-        const Vec3<Real> emission = emissionFrom<Real>(materialOf(primitive), Side::back);
+        const Vec3<Real> emission = coveredEmission({primitive}, Side::back);
         if (!(distance > 0) || !(cosine > 0) || emission == Vec3<Real>(0)) return std::nullopt;
         return LightSample<Real>{wi, spherePdf(primitive, distance, cosine), emission, rayTo(origin, point, -normal),
                                  primitive};
     }
 
-    const Scene& scene_;
     const World<Real>& world_;
+    Attributes<Real> attributes_;
 };
 
 } // namespace isolux

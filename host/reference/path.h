@@ -2,8 +2,7 @@
 #pragma once
 
 #include "reference/lights.h"
-#include "reference/scattering.h"
-#include "reference/tracing.h"
+#include "reference/vertex.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -11,28 +10,33 @@
 
 namespace isolux {
 
+/// Blocks of words for the cells of environment maps.
+inline constexpr std::uint32_t kCellBlocks = 0x40000000u;
+
 /// Follows paths through a scene. Keeps references; safe to use from many threads.
 template <typename Real> class PathTracer {
 public:
     PathTracer(const Scene& scene, const World<Real>& world, const RenderSettings& settings,
                const Tracing<Real>& tracing)
-        : environment_(scene.environment), settings_(settings), counted_(countedBounces(settings)), tracing_(tracing),
+        : scene_(scene), settings_(settings), counted_(countedBounces(settings)), tracing_(tracing),
           lights_(scene, world, settings) {}
 
     [[nodiscard]] PathResult<Real> trace(const SampleStream& stream) const {
         Path path{tracing_.cameraRay(stream)};
         for (std::uint32_t bounce = 0;; ++bounce) {
-            const std::optional<Surface<Real>> surface = tracing_.findSurface(path.ray, path.result);
+            const std::optional<Surface<Real>> surface =
+                tracing_.findSurface(path.ray, tracing_.presence(stream, 2 * bounce), path.result);
             if (!surface) {
                 addEnvironment(path, bounce);
                 break;
             }
             if (bounce == 0) tracing_.noteFirstHit(path.result, *surface);
-            addEmission(path, *surface, bounce);
-            if (bounce == counted_.last) break;
-            if (counts(bounce + 1)) addDirectLight(path, *surface, stream, bounce);
+            const Vertex<Real> vertex(tracing_, *surface);
+            absorb(path, vertex);
+            if (addEmission(path, vertex, bounce) == Fate::ends || bounce == counted_.last) break;
+            if (counts(bounce + 1) && vertex.scattersBroadly()) addDirectLight(path, vertex, stream, bounce);
             const PhiloxBlock words = stream.block(2 + 2 * bounce);
-            if (scatter(path, *surface, words) == Fate::ends) break;
+            if (scatter(path, vertex, words) == Fate::ends) break;
             if (bounce + 1 >= settings_.roulette.start && roulette(path, words[2]) == Fate::ends) break;
         }
         return path.result;
@@ -44,7 +48,9 @@ private:
     struct Path {
         Ray<Real> ray;
         Vec3<Real> throughput{1};
-        Real pdf = 0; ///< solid angle, of the ray's direction; unused for the camera ray
+        std::optional<Real> pdf{}; ///< solid angle, of the ray's direction; none if no other way leads there
+        std::uint32_t medium = kNoMedium;
+        Real radianceScale = 1; ///< what refractions have scaled the throughput by
         PathResult<Real> result{};
     };
 
@@ -65,34 +71,49 @@ private:
 
     /// What the camera sees beyond every surface counts as met, so that it is opaque.
     void addEnvironment(Path& path, std::uint32_t bounce) const {
-        const Vec3<Real> radiance = environmentRadiance(environment_, path.ray.direction);
+        const Vec3<Real>& direction = path.ray.direction;
+        const Vec3<Real> radiance = lights_.radianceOfEnvironment(direction);
         if (radiance == Vec3<Real>(0)) return;
         if (bounce == 0) path.result.cameraHits = 1;
         if (!counts(bounce)) return;
-        const bool onlyWay = bounce == 0 || !lights_.containsEnvironment();
-        const Real weight = onlyWay ? Real(1) : weightOfScattering(path.pdf, lights_.pdfOfEnvironment());
+        const bool onlyWay = !path.pdf || !lights_.containsEnvironment();
+        const Real weight = onlyWay ? Real(1) : weightOfScattering(*path.pdf, lights_.pdfOfEnvironment(direction));
         path.result.radiance += path.throughput * radiance * weight;
     }
 
-    void addEmission(Path& path, const Surface<Real>& surface, std::uint32_t bounce) const {
-        const Vec3<Real> emission = emissionFrom<Real>(tracing_.materialAt(surface), surface.side());
-        if (emission == Vec3<Real>(0) || !counts(bounce)) return;
-        const bool onlyWay = bounce == 0 || !lights_.contains(surface.primitive);
-        const Real weight = onlyWay ? Real(1) : weightOfScattering(path.pdf, lights_.pdf(path.ray.origin, surface));
+    /// What the solid in which the ray ran has left of the path.
+    void absorb(Path& path, const Vertex<Real>& vertex) const {
+        path.medium = vertex.mediumBefore(path.medium);
+        if (path.medium != kNoMedium) path.throughput *= transmittanceIn(scene_, path.medium, vertex.surface().t);
+    }
+
+    /// Unlit surfaces end a path.
+    [[nodiscard]] Fate addEmission(Path& path, const Vertex<Real>& vertex, std::uint32_t bounce) const {
+        const Surface<Real>& surface = vertex.surface();
+        if (tracing_.materialAt(surface).unlit) {
+            if (counts(bounce)) path.result.radiance += path.throughput * vertex.material().base;
+            return Fate::ends;
+        }
+        const Vec3<Real> emission = emissionAt(tracing_.attributes(), surface.place(), surface.side());
+        if (emission == Vec3<Real>(0) || !counts(bounce)) return Fate::goesOn;
+        const bool onlyWay = !path.pdf || !lights_.contains(surface.primitive);
+        const Real weight = onlyWay ? Real(1) : weightOfScattering(*path.pdf, lights_.pdf(path.ray.origin, surface));
         path.result.radiance += path.throughput * emission * weight;
+        return Fate::goesOn;
     }
 
-    /// f of the written conventions: Lambertian, without the cosine. The geometric normal decides the side.
-    [[nodiscard]] Vec3<Real> evaluate(const Surface<Real>& surface, const Vec3<Real>& wi) const {
-        const bool reflects = tracing_.onOurSide(surface, wi) && glm::dot(wi, surface.ns) > 0;
-        const Vec3<Real> baseColor(tracing_.materialAt(surface).baseColor);
-        return reflects ? baseColor / static_cast<Real>(kPi) : Vec3<Real>(0);
-    }
-
-    void addDirectLight(Path& path, const Surface<Real>& surface, const SampleStream& stream,
+    void addDirectLight(Path& path, const Vertex<Real>& vertex, const SampleStream& stream,
                         std::uint32_t bounce) const {
-        for (std::uint32_t index = 0; index < lights_.sampleCount(); ++index)
-            addLight(path, surface, lights_.sample(surface, stream.block(lightBlock(bounce, index)), index));
+        for (std::uint32_t index = 0; index < lights_.sampleCount(); ++index) {
+            const std::uint32_t block = lightBlock(bounce, index);
+            const PhiloxBlock cellWords = lights_.hasMap() ? stream.block(kCellBlocks ^ block) : PhiloxBlock{};
+            const auto light = lights_.sample(vertex.surface(), stream.block(block), index, cellWords);
+            const Response<Real> response = light ? vertex.evaluate(light->wi) : Response<Real>{};
+            if (response.f == Vec3<Real>(0))
+                path.result.record(PathEvent::noRay);
+            else
+                addLight(path, vertex, response, *light, tracing_.presence(stream, block));
+        }
     }
 
     /// The number of the block of light sample `index` at a bounce.
@@ -101,25 +122,37 @@ private:
         return index == 0 ? 1 + 2 * bounce : kFurther | (bounce * lights_.sampleCount() + index);
     }
 
-    void addLight(Path& path, const Surface<Real>& surface, std::optional<LightSample<Real>> light) const {
-        const Vec3<Real> f = light ? evaluate(surface, light->wi) : Vec3<Real>(0);
-        if (f == Vec3<Real>(0)) return path.result.record(PathEvent::noRay);
-        light->shadowRay.origin = surface.originTowards(light->wi);
-        if (tracing_.visibility(light->shadowRay, light->primitive, path.result) == Visibility::blocked) return;
-        const Real cosine = glm::dot(light->wi, surface.ns);
-        const Real weight = weightOfLight(*light, cosine / static_cast<Real>(kPi));
-        path.result.radiance += path.throughput * f * light->emission * (cosine / light->pdf * weight);
+    /// The ray to a light, which was sampled from the side of wo, from the side on which it leaves to the same point.
+    [[nodiscard]] static Ray<Real> shadowRay(const Surface<Real>& surface, const LightSample<Real>& light) {
+        const Ray<Real>& ray = light.shadowRay;
+        const Vec3<Real> origin = surface.originTowards(light.wi);
+        if (origin == ray.origin || !std::isfinite(ray.tMax)) return {origin, ray.direction, ray.tMax};
+        const Vec3<Real> way = ray.origin + ray.tMax * ray.direction - origin;
+        const Real distance = glm::length(way);
+        return {origin, way / distance, distance};
     }
 
-    [[nodiscard]] Fate scatter(Path& path, const Surface<Real>& surface, const PhiloxBlock& words) const {
-        const bool uniform = settings_.lightSampling == LightSampling::hemisphere;
-        const ScatteredDirection<Real> next =
-            uniform ? scatterUniformly(surface, words) : scatterByCosine(surface, words);
-        path.ray = {surface.originTowards(next.wi), next.wi};
-        path.pdf = next.pdf;
-        path.throughput *= next.weight * Vec3<Real>(tracing_.materialAt(surface).baseColor);
-        const bool alive = tracing_.onOurSide(surface, next.wi) && path.throughput != Vec3<Real>(0);
-        return alive ? Fate::goesOn : Fate::ends;
+    void addLight(Path& path, const Vertex<Real>& vertex, const Response<Real>& response,
+                  const LightSample<Real>& light, const std::optional<Presence<Real>>& presence) const {
+        const Ray<Real> ray = shadowRay(vertex.surface(), light);
+        if (tracing_.visibility(ray, light.primitive, presence, path.result) == Visibility::blocked) return;
+        const std::uint32_t medium = vertex.mediumTowards(light.wi, path.medium);
+        const Vec3<Real> arriving = light.emission * transmittanceIn(scene_, medium, ray.tMax);
+        const Real weight = weightOfLight(light, response.pdf);
+        path.result.radiance += path.throughput * response.f * arriving * (response.cosine / light.pdf * weight);
+    }
+
+    [[nodiscard]] Fate scatter(Path& path, const Vertex<Real>& vertex, const PhiloxBlock& words) const {
+        const std::optional<Departure<Real>> next = vertex.scatter(settings_.lightSampling, words);
+        if (!next) return Fate::ends;
+        path.ray = {vertex.surface().originTowards(next->wi), next->wi};
+        path.pdf = next->pdf;
+        path.medium = vertex.mediumTowards(next->wi, path.medium);
+        path.throughput *= next->weight;
+        path.radianceScale *= next->radianceScale;
+        if (path.throughput == Vec3<Real>(0)) return Fate::ends;
+        if (next->lobe) path.result.record(*next->lobe);
+        return Fate::goesOn;
     }
 
     /// The probability with which the path goes on.
@@ -127,9 +160,14 @@ private:
         switch (settings_.roulette.kind) {
         case Roulette::off: return 1;
         case Roulette::constant: return static_cast<Real>(1.0 - settings_.roulette.termination);
-        case Roulette::throughput: return std::min(maxComponent(path.throughput), static_cast<Real>(kMaxSurvival));
+        case Roulette::throughput: return survivalByThroughput(path);
         }
         return 1;
+    }
+
+    /// Without the scaling of radiance at refractions, which a path undoes when it leaves the solid.
+    [[nodiscard]] static Real survivalByThroughput(const Path& path) {
+        return std::min(maxComponent(path.throughput) / path.radianceScale, static_cast<Real>(kMaxSurvival));
     }
 
     [[nodiscard]] Fate roulette(Path& path, std::uint32_t word) const {
@@ -142,7 +180,7 @@ private:
         return Fate::ends;
     }
 
-    const Environment& environment_;
+    const Scene& scene_;
     RenderSettings settings_;
     BounceRange counted_;
     const Tracing<Real>& tracing_;

@@ -18,6 +18,8 @@ template <typename Real> struct Hit {
     Real t = 0;
     std::uint32_t primitive = kNoPrimitive;
     Vec3<Real> barycentric{0}; ///< of a triangle
+
+    [[nodiscard]] Place<Real> place() const { return {primitive, barycentric}; }
 };
 
 enum class Visibility { clear, blocked };
@@ -51,13 +53,20 @@ public:
         return nearest(ray, unused);
     }
     [[nodiscard]] std::optional<Hit<Real>> nearest(const Ray<Real>& ray, TraversalTests& tests) const {
+        return nearest(ray, tests, kEverything);
+    }
+    /// Among the hits for which `isThere` is true.
+    template <typename IsThere>
+    [[nodiscard]] std::optional<Hit<Real>> nearest(const Ray<Real>& ray, TraversalTests& tests,
+                                                   const IsThere& isThere) const {
         const RayView<Real> view(ray);
         Hit<Real> best;
         best.t = ray.tMax;
         forEachCandidate(ray, tests, [&](std::uint32_t primitive) {
             ++tests.primitives;
             const std::optional<Hit<Real>> hit = intersect(ray, view, primitive);
-            if (hit && (hit->t < best.t || (hit->t == best.t && primitive < best.primitive))) best = *hit;
+            const bool nearer = hit && (hit->t < best.t || (hit->t == best.t && primitive < best.primitive));
+            if (nearer && isThere(hit->place())) best = *hit;
             return best.t;
         });
         return best.primitive == kNoPrimitive ? std::nullopt : std::optional(best);
@@ -69,12 +78,19 @@ public:
         return visibility(ray, ignored, unused);
     }
     [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored, TraversalTests& tests) const {
+        return visibility(ray, ignored, tests, kEverything);
+    }
+    /// Among the hits for which `isThere` is true.
+    template <typename IsThere>
+    [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored, TraversalTests& tests,
+                                        const IsThere& isThere) const {
         const RayView<Real> view(ray);
         Visibility visibility = Visibility::clear;
         forEachCandidate(ray, tests, [&](std::uint32_t primitive) {
             if (primitive == ignored) return ray.tMax;
             ++tests.primitives;
-            if (!intersect(ray, view, primitive)) return ray.tMax;
+            const std::optional<Hit<Real>> hit = intersect(ray, view, primitive);
+            if (!hit || !isThere(hit->place())) return ray.tMax;
             visibility = Visibility::blocked;
             return kStop;
         });
@@ -87,6 +103,7 @@ private:
         Real t; ///< where the ray enters the node
     };
     static constexpr Real kStop = -1;
+    static constexpr auto kEverything = [](const Place<Real>&) { return true; };
 
     [[nodiscard]] std::optional<TriangleHit<Real>> intersectTriangle(const Ray<Real>& ray, const RayView<Real>& view,
                                                                      const WorldTriangle<Real>& triangle) const {

@@ -15,6 +15,9 @@ template <typename Real> struct Frame {
     Vec3<Real> n;
 
     [[nodiscard]] Vec3<Real> toWorld(const Vec3<Real>& local) const { return local.x * t + local.y * s + local.z * n; }
+    [[nodiscard]] Vec3<Real> toLocal(const Vec3<Real>& world) const {
+        return {glm::dot(world, t), glm::dot(world, s), glm::dot(world, n)};
+    }
 };
 
 /// Duff et al. 2017, "Building an orthonormal basis, revisited", with the threshold moved away from common normals.

@@ -18,11 +18,19 @@ template <typename Real> struct Surface {
     Vec3<Real> ns;       ///< unit shading normal on the side of wo
     Vec3<Real> position; ///< the hit point, as rounded
     Vec3<Real> origin;   ///< where rays leave from: off the surface, on the side of wo
-    Vec3<Real> behind;   ///< the same on the other side, where only SideRule::shading lets rays go
+    Vec3<Real> behind;   ///< the same on the other side: where transmission lets rays go, and SideRule::shading others
     Real t = 0;          ///< distance along the ray that found it
+    Vec3<Real> barycentric{0}; ///< of a triangle
+
+    [[nodiscard]] Place<Real> place() const { return {primitive, barycentric}; }
 
     [[nodiscard]] Vec3<Real> originTowards(const Vec3<Real>& wi) const {
         return glm::dot(wi, facing) >= 0 ? origin : behind;
+    }
+    /// Where light of a primitive is sampled from. A surface sees itself from inside alone, through itself: only a
+    /// sphere that transmits does.
+    [[nodiscard]] const Vec3<Real>& originFor(std::uint32_t light) const {
+        return light == primitive && side() == Side::front ? behind : origin;
     }
     [[nodiscard]] Side side() const { return facing == ng ? Side::front : Side::back; }
 };
@@ -73,6 +81,7 @@ template <typename Real>
     surface.primitive = hit.primitive;
     surface.material = world.materialOf(hit.primitive);
     surface.t = hit.t;
+    surface.barycentric = hit.barycentric;
     surface.wo = -ray.direction;
     BoundedPoint<Real> point;
     if (world.isTriangle(hit.primitive)) {

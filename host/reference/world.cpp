@@ -54,6 +54,7 @@ void addTriangle(World<Real>& world, const Placement& placement, std::array<std:
     WorldTriangle<Real> triangle;
     triangle.material = placement.mesh.material;
     triangle.object = placement.object;
+    triangle.vertices = vertices;
     std::array<Vec3d, 3> kept; // everything follows from the corners as they are kept, or rays would leak
     Box3d bounds;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -86,6 +87,8 @@ template <typename Real> World<Real> flatten(const Scene& scene) {
     std::uint32_t object = 0;
     for (const Instance& instance : scene.instances) {
         const Placement placement(scene, instance, object++);
+        world.instances.push_back(
+            {Mat3<Real>(Mat3d(instance.worldFromObject)), placement.mirrored ? Real(-1) : Real(1)});
         for (const auto& triangle : placement.mesh.triangles) addTriangle(world, placement, triangle);
     }
     for (const Sphere& sphere : scene.spheres) addSphere(world, sphere, object++);

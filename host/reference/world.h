@@ -16,7 +16,14 @@ template <typename Real> struct WorldTriangle {
     Vec3<Real> ng{0};                    ///< unit, on the front side; zero where the triangle has no area: never hit
     Real area = 0;
     std::uint32_t material = 0;
-    std::uint32_t object = 0; ///< the instance it belongs to
+    std::uint32_t object = 0;                ///< the instance it belongs to
+    std::array<std::uint32_t, 3> vertices{}; ///< of its mesh, in the order of the positions
+};
+
+/// What directions in an instance's mesh become in the world.
+template <typename Real> struct WorldInstance {
+    Mat3<Real> linear{1};
+    Real handedness = 1; ///< -1: mirrored
 };
 
 template <typename Real> struct WorldSphere {
@@ -26,10 +33,17 @@ template <typename Real> struct WorldSphere {
     std::uint32_t object = 0; ///< counted after all instances
 };
 
+/// A point of a primitive.
+template <typename Real> struct Place {
+    std::uint32_t primitive = 0;
+    Vec3<Real> barycentric{0}; ///< of a triangle
+};
+
 /// A primitive id is an index into `triangles`, or `triangles.size()` plus an index into `spheres`.
 template <typename Real> struct World {
     std::vector<WorldTriangle<Real>> triangles;
     std::vector<WorldSphere<Real>> spheres;
+    std::vector<WorldInstance<Real>> instances;
     std::vector<Box3f> boxes; ///< one per primitive, rounded outward
 
     [[nodiscard]] bool isTriangle(std::uint32_t primitive) const { return primitive < triangles.size(); }
