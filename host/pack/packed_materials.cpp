@@ -48,8 +48,13 @@ void appendAlbedo(Tables& tables, std::span<const float> values, std::size_t ang
                     glm::vec4(at(slice, y, x), at(slice, y, x + 1), at(slice, y + 1, x), at(slice, y + 1, x + 1)));
 }
 
-bool scattersByLobes(const Material& material) {
+bool needsReflectionAlbedo(const Material& material) {
     return material.metallic > 0.0 || material.specular > 0.0 || material.transmission > 0.0;
+}
+
+/// The largest table by far.
+bool needsGlassAlbedo(const Material& material) {
+    return material.transmission > 0.0 && material.thickness > 0.0 && material.roughness > 0.0;
 }
 
 } // namespace
@@ -141,11 +146,14 @@ TextureOffsets MaterialPacker::appendTextures(Tables& tables) const {
     offsets.srgb16 = tables.next();
     if (usesSrgb(true)) tables.appendAll(std::span<const float>(srgbTable<std::uint16_t>()));
     offsets.albedos = tables.next();
-    if (std::any_of(materials_.begin(), materials_.end(), scattersByLobes)) {
+    const auto any = [&](bool (*needs)(const Material&)) {
+        return std::any_of(materials_.begin(), materials_.end(), needs);
+    };
+    if (any(needsReflectionAlbedo)) {
         appendAlbedo(tables, reflectionAlbedo(), kAlbedoAngles, kAlbedoRoughnesses);
         appendAlbedo(tables, fresnelAlbedo(), kFresnelAngles, kAlbedoRoughnesses);
-        appendAlbedo(tables, glassAlbedo(), kGlassAngles, kGlassRoughnesses);
     }
+    if (any(needsGlassAlbedo)) appendAlbedo(tables, glassAlbedo(), kGlassAngles, kGlassRoughnesses);
     return offsets;
 }
 

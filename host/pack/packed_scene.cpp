@@ -323,6 +323,7 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
         word(Vec3f(environment.radiance * packed.radianceScale), static_cast<float>(packed.environmentPdf));
     parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
     parameters.environmentLimits.y = static_cast<float>(environment.rotation - std::floor(environment.rotation));
+    parameters.environmentLimits.z = static_cast<float>(packed.radianceScale);
     const PackedEnvironment& map = packed.environment;
     parameters.environmentMap = {map.texels, map.bins, map.width, map.height};
     parameters.imageSeed = {settings.width, settings.height, static_cast<std::uint32_t>(settings.seed),

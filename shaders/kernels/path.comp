@@ -235,7 +235,7 @@ void shadeHit(RayTransform transform, inout ShadingPoint point) {
         addEmission(surface, material, at);
         ends = path.depth >= render.depthLights.x;
         if (kUnlit && (floatBitsToUint(material.emissionFlags.w) & kMaterialUnlit) != 0u) {
-            if (countsBounce(path.depth)) path.radiance += path.throughput * base;
+            if (countsBounce(path.depth)) path.radiance += path.throughput * base * render.environmentLimits.z;
             ends = true;
         }
     }

@@ -16,11 +16,15 @@ float lookUp(uint table, uvec2 nodes, vec2 at) {
     return mix(mix(corners.x, corners.y, f.x), mix(corners.z, corners.w, f.x), f.y);
 }
 
-// Where alpha and the cosine lie in the tables: the albedo varies with their ratio where both are small.
-float albedoAngle(float cosine, float alpha) { return cosine * (1.0 + alpha) / (cosine + alpha); }
+// Where alpha and the cosine lie in the tables: the albedos vary with their ratio where both are small.
+vec2 albedoCoordinates(float cosine, float alpha) {
+    float m = sqrt(cosine);
+    float y = sqrt(alpha);
+    return vec2(m * (1.0 + y) / (m + y), y);
+}
 
 float reflectionAlbedo(uint tables, float cosine, float alpha) {
-    return lookUp(tables, uvec2(kReflectionAngles, kReflectionRoughnesses), vec2(albedoAngle(cosine, alpha), sqrt(alpha)));
+    return lookUp(tables, uvec2(kReflectionAngles, kReflectionRoughnesses), albedoCoordinates(cosine, alpha));
 }
 
 // The average of (1 - wo.h)^5 over what the lobe reflects.
@@ -32,10 +36,10 @@ float fresnelAlbedo(uint tables, float cosine, float alpha) {
 float glassAlbedo(uint tables, float cosine, float alpha, float ior, bool inside) {
     uvec2 nodes = uvec2(kGlassTableAngles, kGlassTableRoughnesses);
     uint slice = nodes.x * nodes.y;
-    float s = (ior - 1.0) / (ior + 1.0) * float(kGlassTableIndices - 1u);
+    float s = sqrt((ior - 1.0) / (ior + 1.0)) * float(kGlassTableIndices - 1u);
     float base = min(floor(s), float(kGlassTableIndices - 2u));
     uint table = tables + kGlassTable + (uint(base) + (inside ? kGlassTableIndices : 0u)) * slice;
-    vec2 at = vec2(albedoAngle(cosine, alpha), sqrt(alpha));
+    vec2 at = albedoCoordinates(cosine, alpha);
     return mix(lookUp(table, nodes, at), lookUp(table + slice, nodes, at), s - base);
 }
 

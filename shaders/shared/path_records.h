@@ -64,7 +64,8 @@ struct RenderParameters {
     vec4 lensRight;      // unit, as cameraRight and cameraUp are not
     vec4 lensUp;
     vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it
-    vec4 environmentLimits; // x: it emits from directions with y above this alone; y: rotation of the map in turns
+    vec4 environmentLimits; // x: it emits from directions with y above this alone; y: rotation of the map in turns,
+                            // z: device radiance over that of the world
     uvec4 environmentMap;   // first word of its texels and of the bins of its cells, width, height
     uvec4 imageSeed;        // width, height, seed low, seed high
     vec4 methods;      // radius of the lens, 1/focus distance, roulette's constant survival, reach of ambient occluders

@@ -130,12 +130,12 @@ ISOLUX_CONSTANT uint kWrapClamp = 2u;
 
 // Albedo tables (host/scene/albedo_tables.h), a word for each node: its value, the next angle's, and both of the next
 // roughness.
-ISOLUX_CONSTANT uint kReflectionAngles = 64u;
+ISOLUX_CONSTANT uint kReflectionAngles = 32u;
 ISOLUX_CONSTANT uint kReflectionRoughnesses = 32u;
 ISOLUX_CONSTANT uint kFresnelTableAngles = 32u;
-ISOLUX_CONSTANT uint kGlassTableAngles = 16u;
-ISOLUX_CONSTANT uint kGlassTableRoughnesses = 16u;
-ISOLUX_CONSTANT uint kGlassTableIndices = 16u;
+ISOLUX_CONSTANT uint kGlassTableAngles = 40u;
+ISOLUX_CONSTANT uint kGlassTableRoughnesses = 24u;
+ISOLUX_CONSTANT uint kGlassTableIndices = 40u;
 
 // Words (of 16 bytes) a record.
 ISOLUX_CONSTANT uint kNodeWords = 4u;
