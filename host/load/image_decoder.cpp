@@ -1,6 +1,7 @@
 #include "load/image_decoder.h"
 
 #include "load/context.h"
+#include "load/webp.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -125,6 +126,19 @@ private:
     std::unique_ptr<OIIO::ImageInput> input_;
 };
 
+std::vector<Texel8> readTexels8(const EncodedImage& image, const Format& format, OIIO::ImageInput& input) {
+    std::vector<Texel8> texels = readTexels<Texel8>(image, input, OIIO::TypeDesc::UINT8);
+    if (format.mimeType != "image/webp" || input.spec().nchannels != 4) return texels;
+    const Bytes opaque = withoutAlpha(image.bytes);
+    const EncodedImage colors{opaque, image.where};
+    Decoder decoder(colors, format);
+    const std::vector<Texel8> straight = readTexels<Texel8>(colors, decoder.input(), OIIO::TypeDesc::UINT8);
+    if (straight.size() != texels.size()) image.where.fail("cannot be decoded: its parts differ in size");
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        texels[i] = Texel8(straight[i].r, straight[i].g, straight[i].b, texels[i].a);
+    return texels;
+}
+
 } // namespace
 
 void requireReasonableHeader(const EncodedImage& image) {
@@ -150,7 +164,7 @@ TextureImage decodeImage(const EncodedImage& image, std::uint64_t mostBytes) {
     if (isDeep)
         result.texels16 = readTexels<Texel16>(image, decoder.input(), OIIO::TypeDesc::UINT16);
     else
-        result.texels8 = readTexels<Texel8>(image, decoder.input(), OIIO::TypeDesc::UINT8);
+        result.texels8 = readTexels8(image, *format, decoder.input());
     return result;
 }
 
