@@ -1,18 +1,16 @@
 // Environment maps from files: formats, channels, and texels that are no radiance.
+#include "unit/load_shared.h"
+
 #include "core/error.h"
 #include "load/environment_file.h"
 
 #include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 
 namespace isolux {
 namespace {
-
-namespace fs = std::filesystem;
 
 class LoadEnvironmentTest : public ::testing::Test {
 protected:
@@ -117,11 +115,9 @@ TEST_F(LoadEnvironmentTest, TruncatedAndHugeFilesAreRefused) {
 }
 
 TEST(SharedScenes, EnvironmentMapsLoad) {
-    const fs::path folder = fs::path(ISOLUX_SOURCE_DIR) / ".." / "shared" / "scenes" / "env";
-    if (!fs::is_directory(folder)) {
-        if (std::getenv("CI") != nullptr) FAIL() << "needs " << folder << ", which is not there";
-        GTEST_SKIP() << "needs the test scenes in ../shared";
-    }
+    const std::optional<fs::path> scenes = sharedScenes();
+    if (!scenes) return;
+    const fs::path folder = *scenes / "env";
     std::size_t count = 0;
     for (const auto& entry : fs::directory_iterator(folder)) {
         const auto map = loadEnvironmentMap(entry.path());
