@@ -52,14 +52,34 @@ void warnOfMimeType(const EncodedImage& image, const Format& format) {
         type->warn(fmt::format("is not {}, which the image is; read all the same", format.mimeType));
 }
 
-/// JPEG's decoder fills what is missing with grey; a whole file has an end marker after its last scan. (Markers do not
+/// A whole JPEG has an end marker after its last scan; its decoder fills what is missing with grey. (Markers do not
 /// occur within scans; a preview among the metadata has both before the first scan.)
-void requireEnd(const EncodedImage& image, const Format& format) {
-    const std::string_view text = asText(image.bytes);
+bool isWholeJpeg(std::string_view text) {
     const std::size_t scan = text.rfind("\xFF\xDA"sv);
     const std::size_t end = text.rfind("\xFF\xD9"sv);
-    if (format.mimeType == "image/jpeg" && (scan == text.npos || end == text.npos || end < scan))
-        image.where.fail("its JPEG data is cut short");
+    return scan != text.npos && end != text.npos && end > scan;
+}
+
+/// Whether chunks (PNG, 5.3: length, name, data, checksum) follow each other up to the last, IEND. OpenImageIO's reader
+/// loses memory where the data ends before.
+bool isWholePng(ByteSpan png) {
+    constexpr std::size_t kAroundData = 12;
+    ByteSpan rest = png.subspan(8);
+    while (rest.size() >= kAroundData) {
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) length = length << 8 | rest[i];
+        if (length > rest.size() - kAroundData) return false;
+        if (asText(rest.subspan(4, 4)) == "IEND") return true;
+        rest = rest.subspan(length + kAroundData);
+    }
+    return false;
+}
+
+void requireWhole(const EncodedImage& image, const Format& format) {
+    const bool isWhole = format.mimeType == "image/png"    ? isWholePng(image.bytes)
+                         : format.mimeType == "image/jpeg" ? isWholeJpeg(asText(image.bytes))
+                                                           : true; // WebP's decoder says so itself
+    if (!isWhole) image.where.fail("its data is cut short or damaged");
 }
 
 /// OpenImageIO's own words, in one line.
@@ -106,6 +126,7 @@ public:
     Decoder(const EncodedImage& image, const Format& format)
         // Never written to: the type is that of the interface.
         : bytes_(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size()) {
+        requireWhole(image, format);
         OIIO::attribute("limits:channels", kMostChannels);
         OIIO::attribute("limits:imagesize_MB", kLargestSide / 1024 * (kLargestSide / 1024) * int{sizeof(Texel16)});
         input_ = OIIO::ImageInput::create(format.name);
@@ -149,7 +170,6 @@ TextureImage decodeImage(const EncodedImage& image, std::uint64_t mostBytes) {
     const Format* format = findFormat(image);
     if (format == nullptr) image.where.fail("is neither PNG, JPEG nor WebP by its first bytes");
     warnOfMimeType(image, *format);
-    requireEnd(image, *format);
     Decoder decoder(image, *format);
     const OIIO::ImageSpec spec = decoder.input().spec();
     TextureImage result;

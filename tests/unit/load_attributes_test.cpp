@@ -135,7 +135,8 @@ TEST_F(LoadAttributesTest, TangentsAreMadeWhereThereAreNone) {
     useNormalMap();
     const Mesh mesh = loadMesh();
     ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());
-    for (const glm::vec4& tangent : mesh.tangents) EXPECT_EQ(tangent, glm::vec4(1, 0, 0, 1)); // u grows along x
+    for (const glm::vec4& tangent : mesh.tangents)
+        EXPECT_EQ(tangent, glm::vec4(1, 0, 0, -1)); // v grows along y, and up in the image is -y
 }
 
 TEST_F(LoadAttributesTest, FlatMeshesWithNormalMapsGetNormalsOfTheirTriangles) {

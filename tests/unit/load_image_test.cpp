@@ -204,13 +204,13 @@ std::string claimingPng(std::uint32_t width, std::uint32_t height) {
         for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1u) != 0 ? 0xEDB88320u : 0u);
     }
     return "\x89PNG\r\n\x1A\n" + bigEndian(13) + header + bigEndian(~crc) + bigEndian(0) + "IDAT" +
-           bigEndian(0x35AF061Eu);
+           bigEndian(0x35AF061Eu) + bigEndian(0) + "IEND" + bigEndian(0xAE426082u);
 }
 
 TEST_F(LoadImageTest, HeadersThatClaimTooMuchAreRefusedBeforeMemoryIsTaken) {
     EXPECT_MENTIONS(failureOf(claimingPng(65535, 65535)), "/images/0: ");
     EXPECT_MENTIONS(failureOf(claimingPng(20000, 4)), "at most 16384 a side");
-    EXPECT_MENTIONS(failureOf(claimingPng(16384, 16384)), "16384 x 16384 texels: 45 bytes cannot hold them");
+    EXPECT_MENTIONS(failureOf(claimingPng(16384, 16384)), "16384 x 16384 texels: 57 bytes cannot hold them");
     // Whether or not a surface needs the image.
     json document = triangleDocument();
     document["images"] = {{{"uri", dataUri(claimingPng(16384, 16384))}}};
