@@ -94,28 +94,33 @@ const std::uint8_t* AccessorView::find(std::size_t element) const {
     return base_.empty() ? nullptr : base_.data() + element * stride_;
 }
 
-template <typename T> Vec3f AccessorView::decode(const std::uint8_t* element) const {
-    Vec3f result;
-    for (int i = 0; i < 3; ++i) {
+template <int N, typename T> glm::vec<N, float> AccessorView::decode(const std::uint8_t* element) const {
+    glm::vec<N, float> result;
+    for (int i = 0; i < N; ++i) {
         const auto value = static_cast<float>(readAs<T>(element + static_cast<std::size_t>(i) * sizeof(T)));
         // glTF 2.0, 3.6.2.2: c / largest, and the least signed integer is -1 as well.
         constexpr auto kLargest = static_cast<float>(std::numeric_limits<T>::max());
-        result[i] = decoding_ == Decoding::normalized ? std::max(value / kLargest, -1.0f) : value;
+        const bool isScaled = std::is_integral_v<T> && decoding_ == Decoding::normalized;
+        result[i] = isScaled ? std::max(value / kLargest, -1.0f) : value;
     }
     return result;
 }
 
-Vec3f AccessorView::readVec3(std::size_t element) const {
+template <int N> glm::vec<N, float> AccessorView::read(std::size_t element) const {
     const std::uint8_t* bytes = find(element);
-    if (bytes == nullptr) return Vec3f(0.0f);
+    if (bytes == nullptr) return glm::vec<N, float>(0.0f);
     switch (componentType_) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return decode<std::int8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return decode<std::uint8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return decode<std::int16_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return decode<std::uint16_t>(bytes);
-    default: return {readAs<float>(bytes), readAs<float>(bytes + 4), readAs<float>(bytes + 8)};
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return decode<N, std::int8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return decode<N, std::uint8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return decode<N, std::int16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return decode<N, std::uint16_t>(bytes);
+    default: return decode<N, float>(bytes);
     }
 }
+
+template glm::vec<2, float> AccessorView::read<2>(std::size_t element) const;
+template glm::vec<3, float> AccessorView::read<3>(std::size_t element) const;
+template glm::vec<4, float> AccessorView::read<4>(std::size_t element) const;
 
 std::uint32_t AccessorView::readIndex(std::size_t element) const {
     const std::uint8_t* bytes = find(element);

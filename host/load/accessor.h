@@ -5,6 +5,9 @@
 #include "load/buffers.h"
 #include "load/model.h"
 
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
 namespace isolux {
 
 /// A parsed model with the bytes behind it.
@@ -25,8 +28,8 @@ public:
 
     [[nodiscard]] std::size_t count() const { return count_; }
 
-    /// Three numbers; normalised integers are decoded.
-    [[nodiscard]] Vec3f readVec3(std::size_t element) const;
+    /// `N` numbers (2, 3 or 4); normalised integers are decoded.
+    template <int N> [[nodiscard]] glm::vec<N, float> read(std::size_t element) const;
     /// An unsigned integer of whatever width the accessor has.
     [[nodiscard]] std::uint32_t readIndex(std::size_t element) const;
     /// The index that this width reserves for primitive restart.
@@ -38,7 +41,7 @@ private:
     [[nodiscard]] const std::uint8_t* find(std::size_t element) const;
     [[nodiscard]] std::uint32_t sparseIndex(std::size_t entry) const;
     void verifySparseIndices(std::string_view pointer, const LoadContext& context) const;
-    template <typename T> [[nodiscard]] Vec3f decode(const std::uint8_t* element) const;
+    template <int N, typename T> [[nodiscard]] glm::vec<N, float> decode(const std::uint8_t* element) const;
 
     ByteSpan base_; ///< empty: zeros
     std::size_t stride_ = 0;

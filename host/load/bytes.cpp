@@ -25,12 +25,19 @@ std::string_view describe(fs::file_type type) {
 
 } // namespace
 
+void requireRegularFile(const fs::path& path, const ReadRequest& request) {
+    std::error_code error;
+    const fs::file_type type = fs::status(path, error).type();
+    if (type != fs::file_type::regular)
+        request.context.fail(request.pointer,
+                             fmt::format("cannot read '{}': {}", printable(path.string()), describe(type)));
+}
+
 Bytes readRegularFile(const fs::path& path, const ReadRequest& request) {
     const std::string name = printable(path.string());
     const auto fail = [&](const std::string& message) { request.context.fail(request.pointer, message); };
+    requireRegularFile(path, request);
     std::error_code error;
-    const fs::file_type type = fs::status(path, error).type();
-    if (type != fs::file_type::regular) fail(fmt::format("cannot read '{}': {}", name, describe(type)));
     const std::uintmax_t size = fs::file_size(path, error);
     std::ifstream stream(path, std::ios::binary);
     if (error || !stream) fail(fmt::format("cannot open '{}'; check its permissions", name));

@@ -22,7 +22,10 @@ struct ReadRequest {
     std::uintmax_t largest = 0;
 };
 
-/// Reads a whole regular file. A missing file, directory, FIFO or device is an error, and is never opened.
+/// That a path names a regular file: a missing one, a directory, FIFO or device is an error. Nothing is opened.
+void requireRegularFile(const std::filesystem::path& path, const ReadRequest& request);
+
+/// Reads a whole regular file.
 [[nodiscard]] Bytes readRegularFile(const std::filesystem::path& path, const ReadRequest& request);
 
 /// 64-bit FNV-1a (Fowler, Noll and Vo), to tell scenes apart; no protection against forgery.

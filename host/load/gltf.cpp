@@ -3,6 +3,7 @@
 #include "load/container.h"
 #include "load/context.h"
 #include "load/node_walker.h"
+#include "load/texture_builder.h"
 #include "load/verify.h"
 
 #include <fmt/format.h>
@@ -21,19 +22,6 @@ constexpr std::uint64_t kMostVertices = std::uint64_t{1} << 30;
 constexpr std::uintmax_t kLargestFile = 0xFFFFFFFFu;
 /// Squares of lengths must stay within single precision.
 constexpr double kFarthest = 1e18;
-
-Material toMaterial(const tinygltf::Material& source, std::size_t index) {
-    const auto& color = source.pbrMetallicRoughness.baseColorFactor;
-    const auto& emission = source.emissiveFactor;
-    const double strength =
-        source.extensions.at("KHR_materials_emissive_strength").Get("emissiveStrength").GetNumberAsDouble();
-    Material material;
-    material.name = source.name.empty() ? fmt::format("material {}", index) : source.name;
-    material.baseColor = Vec3d(color[0], color[1], color[2]);
-    material.emission = strength * Vec3d(emission[0], emission[1], emission[2]);
-    material.doubleSided = source.doubleSided;
-    return material;
-}
 
 /// The scene to render, if the file lists scenes: the default one, else the first.
 const tinygltf::Scene* chosenScene(const tinygltf::Model& model) {
@@ -88,13 +76,13 @@ void checkSize(const Scene& scene, const LoadContext& context) {
                                      kFarthest));
 }
 
-Scene buildScene(const Asset& asset, const fs::path& file, LoadContext& context) {
+/// All but textures: their images are read when it is known which are needed.
+Scene buildScene(const Asset& asset, MaterialBuilder& materials, const fs::path& file, LoadContext& context) {
     Scene scene;
     scene.name = sceneName(asset.model, file);
-    for (std::size_t i = 0; i < asset.model.materials.size(); ++i)
-        scene.materials.push_back(toMaterial(asset.model.materials[i], i));
     scene.environment = toEnvironment(asset.model);
-    walkNodes(asset, rootNodes(asset.model), context, scene);
+    walkNodes(asset, rootNodes(asset.model), materials, context, scene);
+    scene.materials = materials.materials();
     checkSize(scene, context);
     if (primitiveCount(scene) == 0 && !scene.environment.emits()) context.warn("", "the scene has nothing to render");
     if (scene.cameras.empty()) scene.cameras.push_back(frameScene(scene));
@@ -112,11 +100,15 @@ Scene loadScene(const fs::path& file) {
     const nlohmann::json document = parseJson(container.json, context);
     const JsonReader root(document, "", context);
     const nlohmann::json verified = verifyDocument(root);
+    MaterialBuilder materials(verifyMaterials(root));
+    const std::vector<FileTexture> textures = verifyTextures(root);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     Asset asset;
     asset.buffers = readBuffers(root, {folder, container.binary}, hash);
+    const EncodedImages images = readImages(root, asset.buffers, folder, hash);
     asset.model = parseModel(verified, context);
-    Scene scene = buildScene(asset, file, context);
+    Scene scene = buildScene(asset, materials, file, context);
+    buildTextures(scene, textures, images.images);
     scene.warnings = context.warnings();
     scene.contentHash = hash.hexadecimal();
     validate(scene);

@@ -3,6 +3,7 @@
 #include "load/context.h"
 #include "load/topology.h"
 #include "load/verify.h"
+#include "scene/tangents.h"
 
 #include <fmt/format.h>
 
@@ -14,9 +15,20 @@ namespace {
 
 constexpr std::string_view kLeftOut = "left out";
 
-int attributeOf(const tinygltf::Primitive& primitive, const char* name) {
+int attributeOf(const tinygltf::Primitive& primitive, const std::string& name) {
     const auto attribute = primitive.attributes.find(name);
     return attribute == primitive.attributes.end() ? -1 : attribute->second;
+}
+
+std::string uvAttribute(std::uint32_t set) { return fmt::format("TEXCOORD_{}", set); }
+
+/// Whether an attribute's type is one that KHR_mesh_quantization adds; glTF itself has small coordinates and colours.
+bool isQuantised(const std::string& name, const tinygltf::Accessor& accessor) {
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT || name == "COLOR_0" || name == kIndicesAttribute)
+        return false;
+    const bool isUnsigned = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                            accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+    return !(name.starts_with("TEXCOORD_") && isUnsigned && accessor.normalized);
 }
 
 /// The vertices that `indices` use, in ascending order, if there are fewer indices than vertices: primitives often
@@ -49,15 +61,6 @@ const std::vector<std::uint32_t>& MeshBuilder::meshesOf(std::size_t gltfMesh) {
     return *built_[gltfMesh];
 }
 
-std::uint32_t MeshBuilder::materialFor(int gltfMaterial) {
-    if (gltfMaterial >= 0) return static_cast<std::uint32_t>(gltfMaterial);
-    if (!defaultMaterial_) {
-        defaultMaterial_ = static_cast<std::uint32_t>(scene_.materials.size());
-        scene_.materials.emplace_back().name = "default";
-    }
-    return *defaultMaterial_;
-}
-
 void MeshBuilder::build(std::size_t gltfMesh) {
     const tinygltf::Mesh& source = asset_.model.meshes[gltfMesh];
     const std::string name = source.name.empty() ? fmt::format("mesh {}", gltfMesh) : source.name;
@@ -67,8 +70,8 @@ void MeshBuilder::build(std::size_t gltfMesh) {
         if (!isSupported(primitive)) continue;
         Mesh mesh = buildMesh(primitive);
         mesh.name = source.primitives.size() == 1 ? name : fmt::format("{}[{}]", name, i);
-        meshes.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
-        scene_.meshes.push_back(std::move(mesh));
+        meshes.push_back(static_cast<std::uint32_t>(meshes_.size()));
+        meshes_.push_back(std::move(mesh));
     }
 }
 
@@ -95,15 +98,53 @@ Mesh MeshBuilder::buildMesh(const Source& source) {
     const std::size_t vertexCount = accessorAt(attributeOf(source.primitive, "POSITION")).count;
     if (vertexCount > 0xFFFFFFFFu)
         context_.fail(source.pointer, fmt::format("{} vertices are more than 2^32 - 1", vertexCount));
-    charge(source);
+    Mesh mesh;
+    mesh.material = materialOf(source);
+    const VertexAccessors accessors = accessorsOf(source, mesh.material);
+    charge(source, accessors);
+    warnIfUndeclared(source);
     std::vector<std::uint32_t> indices = readIndices(source, vertexCount);
     const std::vector<std::uint32_t> vertices = verticesUsed(indices, vertexCount);
     renumber(indices, vertices);
-    Mesh mesh;
-    mesh.material = materialFor(source.primitive.material);
-    fillVertices(mesh, source, vertices);
+    VertexReader(asset_, context_, source.pointer).read(accessors, vertices, mesh);
     mesh.triangles = assembleTriangles(source.primitive.mode, indices);
+    completeTangents(mesh);
     return mesh;
+}
+
+/// The primitive's material; without the maps for which it has no coordinates.
+std::uint32_t MeshBuilder::materialOf(const Source& source) {
+    const std::uint32_t material = materials_.indexOf(source.primitive.material);
+    std::vector<std::uint32_t> missing;
+    for (const std::uint32_t set : materials_.at(material).uvSets) {
+        if (attributeOf(source.primitive, uvAttribute(set)) >= 0) continue;
+        missing.push_back(set);
+        context_.warn(source.pointer,
+                      fmt::format("it has no {}, which maps of its material use; they are left out", uvAttribute(set)));
+    }
+    return materials_.indexWithout(material, missing);
+}
+
+bool MeshBuilder::hasNormalMap(std::uint32_t material) const {
+    return materials_.at(material).material.map(MapSlot::normal).present();
+}
+
+/// What of a primitive's attributes is kept: colours always, coordinates that a map uses, and tangents for a normal
+/// map. Without normals a mesh is flat, whatever its tangents (glTF 2.0, 3.7.2.1).
+VertexAccessors MeshBuilder::accessorsOf(const Source& source, std::uint32_t material) {
+    const auto find = [&](const std::string& name) { return attributeOf(source.primitive, name); };
+    VertexAccessors accessors{find("POSITION"), find("NORMAL"), -1, find("COLOR_0")};
+    if (accessors.normal >= 0 && !isUsable(accessors.normal, source, "shaded flat")) accessors.normal = -1;
+    if (accessors.normal >= 0 && hasNormalMap(material)) accessors.tangent = find("TANGENT");
+    for (const std::uint32_t set : materials_.at(material).uvSets) accessors.uvs.push_back(find(uvAttribute(set)));
+    return accessors;
+}
+
+/// A normal map needs tangents, and these need normals.
+void MeshBuilder::completeTangents(Mesh& mesh) const {
+    if (!hasNormalMap(mesh.material) || !mesh.tangents.empty()) return;
+    if (mesh.normals.empty()) makeFlat(mesh);
+    generateTangents(mesh, materials_.at(mesh.material).material.map(MapSlot::normal).uvSet);
 }
 
 /// The accessor that says how many indices a primitive has: that of its indices, or of its vertices in order.
@@ -140,31 +181,12 @@ std::vector<std::uint32_t> MeshBuilder::readIndices(const Source& source, std::s
     return indices;
 }
 
-void MeshBuilder::fillVertices(Mesh& mesh, const Source& source, std::span<const std::uint32_t> vertices) {
-    fill(mesh.positions, attributeOf(source.primitive, "POSITION"), vertices);
-    warnIfUndeclared(source);
-    const int normal = attributeOf(source.primitive, "NORMAL");
-    if (normal >= 0 && isUsable(normal, source, "shaded flat")) fill(mesh.normals, normal, vertices);
-}
-
-void MeshBuilder::fill(std::vector<Vec3f>& target, int accessor, std::span<const std::uint32_t> vertices) const {
-    const AccessorView view(asset_, static_cast<std::size_t>(accessor), context_);
-    target.reserve(vertices.size());
-    for (const std::uint32_t vertex : vertices) {
-        const Vec3f value = target.emplace_back(view.readVec3(vertex));
-        if (!isFinite(value))
-            context_.fail(fmt::format("/accessors/{}", accessor),
-                          fmt::format("element {} is not finite ({}, {}, {})", vertex, value.x, value.y, value.z));
-    }
-}
-
 /// Integer vertices are an extension, and a file that has them must require it; they mean the same without.
 void MeshBuilder::warnIfUndeclared(const Source& source) {
     const auto& required = asset_.model.extensionsRequired;
     if (std::find(required.begin(), required.end(), "KHR_mesh_quantization") != required.end()) return;
-    for (const char* name : {"POSITION", "NORMAL"}) {
-        const int accessor = attributeOf(source.primitive, name);
-        if (accessor < 0 || accessorAt(accessor).componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) continue;
+    for (const auto& [name, accessor] : source.primitive.attributes) {
+        if (!isQuantised(name, accessorAt(accessor))) continue;
         context_.warn(source.pointer, "integer vertices without KHR_mesh_quantization in extensionsRequired; read as "
                                       "that extension has them");
         return;
@@ -173,7 +195,7 @@ void MeshBuilder::warnIfUndeclared(const Source& source) {
 
 /// Many primitives may refer to the same data, and an accessor without a bufferView to none at all, so that a small
 /// file could ask for any amount of memory and time. What a primitive takes is known before any of it is allocated.
-void MeshBuilder::charge(const Source& source) {
+void MeshBuilder::charge(const Source& source, const VertexAccessors& accessors) {
     // Meshes that differ in material alone share data too, so a large factor is no proof of malice.
     constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 30;
     constexpr std::uint64_t kClaimsAllowed = std::uint64_t{1} << 20;
@@ -182,7 +204,7 @@ void MeshBuilder::charge(const Source& source) {
         return bytes > allowed && bytes / kLargestFactor > asset_.buffers.totalBytes;
     };
     const tinygltf::Accessor& sequence = sequenceOf(source);
-    const std::uint64_t bytes = bytesToBuild(source);
+    const std::uint64_t bytes = bytesToBuild(source, accessors);
     bytesBuilt_ += bytes;
     if (sequence.bufferView < 0) bytesClaimed_ += bytes;
     if (exceeds(bytesClaimed_, kClaimsAllowed))
@@ -196,11 +218,15 @@ void MeshBuilder::charge(const Source& source) {
                                   kLargestFactor));
 }
 
-/// Indices, vertices, triangles, and the indices of sparse accessors that are checked on the way.
-std::uint64_t MeshBuilder::bytesToBuild(const Source& source) const {
+/// Indices, vertices, triangles, the indices of sparse accessors that are checked on the way, and the corners of
+/// triangles into which tangents may split the vertices.
+std::uint64_t MeshBuilder::bytesToBuild(const Source& source, const VertexAccessors& accessors) const {
     const std::uint64_t indices = sequenceOf(source).count;
-    std::uint64_t bytes = indices * (sizeof(std::uint32_t) + 2 * sizeof(Vec3f));
-    bytes += mostTriangles(source.primitive.mode, indices) * sizeof(Mesh::triangles[0]);
+    const std::uint64_t triangles = mostTriangles(source.primitive.mode, indices);
+    std::uint64_t bytes = indices * (sizeof(std::uint32_t) + accessors.bytesPerVertex());
+    bytes += triangles * sizeof(Mesh::triangles[0]);
+    if (accessors.tangent < 0 && hasNormalMap(materials_.indexOf(source.primitive.material)))
+        bytes += 3 * triangles * (accessors.bytesPerVertex() + sizeof(Vec3f) + sizeof(glm::vec4));
     for (const auto& [name, accessor] : source.primitive.attributes)
         if (const auto& sparse = accessorAt(accessor).sparse; sparse.isSparse)
             bytes += static_cast<std::uint64_t>(sparse.count) * sizeof(std::uint32_t);

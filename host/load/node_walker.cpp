@@ -85,8 +85,9 @@ PunctualLight toLight(const tinygltf::Light& source) {
 
 class NodeWalker {
 public:
-    NodeWalker(const Asset& asset, LoadContext& context, Scene& scene)
-        : asset_(asset), context_(context), scene_(scene), meshes_(asset, context, scene) {}
+    NodeWalker(const Asset& asset, MaterialBuilder& materials, LoadContext& context, Scene& scene)
+        : asset_(asset), materials_(materials), context_(context), scene_(scene),
+          meshes_(asset, materials, context, scene.meshes) {}
 
     /// With a stack of its own: hierarchies may be deeper than the machine's.
     void walk(const std::vector<int>& roots) {
@@ -156,10 +157,10 @@ private:
         const tinygltf::Node& source = node(index);
         if (source.mesh >= 0) {
             const auto& primitives = asset_.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
-            return meshes_.materialFor(primitives.empty() ? -1 : primitives.front().material);
+            return materials_.indexOf(primitives.empty() ? -1 : primitives.front().material);
         }
         const tinygltf::Value& sphere = source.extras.Get("sphere");
-        return meshes_.materialFor(sphere.Has("material") ? sphere.Get("material").GetNumberAsInt() : -1);
+        return materials_.indexOf(sphere.Has("material") ? sphere.Get("material").GetNumberAsInt() : -1);
     }
 
     /// A camera's scale is ignored (glTF 2.0, 3.10.1): the viewing direction and the upright plane are kept.
@@ -190,6 +191,7 @@ private:
     }
 
     const Asset& asset_;
+    MaterialBuilder& materials_;
     LoadContext& context_;
     Scene& scene_;
     MeshBuilder meshes_;
@@ -197,8 +199,9 @@ private:
 
 } // namespace
 
-void walkNodes(const Asset& asset, const std::vector<int>& roots, LoadContext& context, Scene& scene) {
-    NodeWalker(asset, context, scene).walk(roots);
+void walkNodes(const Asset& asset, const std::vector<int>& roots, MaterialBuilder& materials, LoadContext& context,
+               Scene& scene) {
+    NodeWalker(asset, materials, context, scene).walk(roots);
 }
 
 } // namespace isolux

@@ -5,7 +5,8 @@
 
 namespace isolux {
 
-/// Fills the scene from the given root nodes, in depth-first order.
-void walkNodes(const Asset& asset, const std::vector<int>& roots, LoadContext& context, Scene& scene);
+/// Fills the scene from the given root nodes, in depth-first order; all but its materials, which stay with `materials`.
+void walkNodes(const Asset& asset, const std::vector<int>& roots, MaterialBuilder& materials, LoadContext& context,
+               Scene& scene);
 
 } // namespace isolux

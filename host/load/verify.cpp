@@ -12,8 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 4> kSupportedExtensions = {
-    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_specular", "KHR_mesh_quantization"};
+constexpr std::array<std::string_view, 10> kSupportedExtensions = {
+    "EXT_texture_webp",     "KHR_lights_punctual",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",    "KHR_materials_specular", "KHR_materials_transmission",
+    "KHR_materials_unlit",  "KHR_materials_volume",   "KHR_mesh_quantization",
+    "KHR_texture_transform"};
 
 bool isSupported(std::string_view extension) {
     return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
@@ -89,7 +92,6 @@ json verifyDocument(const JsonReader& root) {
     document["extensionsRequired"] = verifyExtensions(root);
     document["bufferViews"] = verifyAll(root, "bufferViews", verifyBufferView);
     document["accessors"] = verifyAll(root, "accessors", verifyAccessor);
-    document["materials"] = verifyAll(root, "materials", verifyMaterial);
     document["meshes"] = verifyAll(root, "meshes", verifyMesh);
     document["cameras"] = verifyAll(root, "cameras", verifyCamera);
     document["extensions"]["KHR_lights_punctual"]["lights"] = verifyLights(root);
@@ -98,6 +100,7 @@ json verifyDocument(const JsonReader& root) {
     if (const std::optional<JsonReader> scene = root.find("scene"))
         document["scene"] = scene->index(root.sizeOf("scenes"), "scenes");
     verifyHierarchy(root);
+    verifyImages(root);
     verifyReferences(root);
     return document;
 }

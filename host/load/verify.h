@@ -2,6 +2,8 @@
 // and ranges that hold. tinygltf and everything after it sees the clean document only.
 #pragma once
 
+#include "load/file_material.h"
+#include "load/file_texture.h"
 #include "load/json_reader.h"
 
 namespace isolux {
@@ -10,8 +12,12 @@ namespace isolux {
 /// bufferView, which sparse ones need not have.
 constexpr const char* kIndicesAttribute = "_INDICES";
 
-/// The clean document: asset, scenes, nodes, meshes, materials, cameras, accessors and bufferViews. Warns of what it
-/// leaves out; throws Error at the pointer of what is wrong.
+/// The clean document: asset, scenes, nodes, meshes, cameras, accessors and bufferViews. Warns of what it leaves out;
+/// throws Error at the pointer of what is wrong.
 [[nodiscard]] nlohmann::json verifyDocument(const JsonReader& root);
+
+/// What never passes through tinygltf, in the file's order: no type of its holds more than these.
+[[nodiscard]] std::vector<FileMaterial> verifyMaterials(const JsonReader& root);
+[[nodiscard]] std::vector<FileTexture> verifyTextures(const JsonReader& root);
 
 } // namespace isolux

@@ -13,6 +13,7 @@ constexpr std::uint64_t kTriangles = 4; // the modes before it are points and li
 constexpr std::uint64_t kByte = 5120;
 constexpr std::uint64_t kUnsignedByte = 5121;
 constexpr std::uint64_t kShort = 5122;
+constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
@@ -35,9 +36,11 @@ void verifyTargets(const JsonReader& primitive, const JsonReader& root, std::uin
     if (count > 0) primitive.at("targets").warn("morph targets are not supported; the base shape is rendered");
 }
 
-void warnOfAttributes(const JsonReader& attributes) {
+/// The first set of colours multiplies the base colour; glTF gives no others a meaning.
+void warnOfColors(const JsonReader& attributes) {
     for (const std::string& name : attributes.keys())
-        if (name.starts_with("COLOR_")) attributes.at(name).warn("vertex colours are not supported; ignored");
+        if (name.starts_with("COLOR_") && name != "COLOR_0")
+            attributes.at(name).warn("vertex colours beyond COLOR_0 have no meaning; ignored");
 }
 
 json verifyIndices(const JsonReader& indices, const JsonReader& root) {
@@ -47,16 +50,53 @@ json verifyIndices(const JsonReader& indices, const JsonReader& root) {
     return indices.integer();
 }
 
-/// Single precision, or the integers that KHR_mesh_quantization adds: any of 8 and 16 bits for POSITION, normalised
-/// signed ones for NORMAL.
+/// What an attribute may be, beside single precision: the integers of glTF 2.0, 3.7.2.1 and KHR_mesh_quantization.
+enum class Integers { smallAny, normalizedSigned, normalizedUnsigned };
+
+struct VertexType {
+    std::string_view shape;
+    std::string_view otherShape;
+    Integers integers;
+};
+
+VertexType vertexType(std::string_view name) {
+    if (name == "POSITION") return {"VEC3", "VEC3", Integers::smallAny};
+    if (name == "NORMAL") return {"VEC3", "VEC3", Integers::normalizedSigned};
+    if (name == "TANGENT") return {"VEC4", "VEC4", Integers::normalizedSigned};
+    if (name == "COLOR_0") return {"VEC3", "VEC4", Integers::normalizedUnsigned};
+    return {"VEC2", "VEC2", Integers::smallAny};
+}
+
+bool isKnown(std::string_view name) {
+    return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" ||
+           name.starts_with("TEXCOORD_");
+}
+
+bool allows(Integers integers, std::uint64_t type, bool isNormalized) {
+    switch (integers) {
+    case Integers::smallAny: return type != kUnsignedInt;
+    case Integers::normalizedSigned: return isNormalized && (type == kByte || type == kShort);
+    default: return isNormalized && (type == kUnsignedByte || type == kUnsignedShort);
+    }
+}
+
+std::string_view describe(Integers integers) {
+    switch (integers) {
+    case Integers::smallAny: return "unsigned ints";
+    case Integers::normalizedSigned: return "integers other than normalized bytes or shorts";
+    default: return "integers other than normalized unsigned bytes or shorts";
+    }
+}
+
 void verifyVertexType(const JsonReader& attribute, std::string_view name, const JsonReader& accessor) {
+    const VertexType allowed = vertexType(name);
+    const std::string& shape = accessor.at("type").string();
+    if (shape != allowed.shape && shape != allowed.otherShape)
+        attribute.fail(fmt::format("refers to an accessor of type {}, not {}", shape, allowed.otherShape));
     const std::uint64_t type = accessor.at("componentType").integer();
     const bool isNormalized = accessor.find("normalized") && accessor.at("normalized").boolean();
-    if (accessor.at("type").string() != "VEC3") attribute.fail("refers to an accessor that is not VEC3");
-    if (type == kFloat) return;
-    if (name == "POSITION" && type == kUnsignedInt) attribute.fail("refers to unsigned ints, which are no positions");
-    if (name == "NORMAL" && !(isNormalized && (type == kByte || type == kShort)))
-        attribute.fail("refers to integers other than normalized bytes or shorts, which are no normals");
+    if (type != kFloat && !allows(allowed.integers, type, isNormalized))
+        attribute.fail(fmt::format("refers to {}, which it cannot be", describe(allowed.integers)));
 }
 
 /// Elements of vertices start at multiples of four bytes (glTF 2.0, 3.6.2.4); integers that do not can be read as well.
@@ -64,7 +104,8 @@ void warnIfUnaligned(const JsonReader& attribute, const JsonReader& accessor, co
     const std::uint64_t component = accessor.at("componentType").integer();
     if (component == kFloat || !accessor.find("bufferView")) return;
     const JsonReader view = root.at("bufferViews").element(accessor.at("bufferView").integer());
-    const std::uint64_t tight = component == kByte || component == kUnsignedByte ? 3 : 6;
+    const std::uint64_t width = component == kByte || component == kUnsignedByte ? 1 : 2;
+    const std::uint64_t tight = width * static_cast<std::uint64_t>(accessor.at("type").string().back() - '0');
     const std::uint64_t stride = view.find("byteStride") ? view.at("byteStride").integer() : tight;
     const std::uint64_t offset = accessor.find("byteOffset") ? accessor.at("byteOffset").integer() : 0;
     if (stride % 4 != 0 || offset % 4 != 0)
@@ -73,13 +114,13 @@ void warnIfUnaligned(const JsonReader& attribute, const JsonReader& accessor, co
 
 json verifyAttributes(const JsonReader& attributes, const JsonReader& root) {
     json result = json::object();
-    for (const std::string_view name : {"POSITION", "NORMAL"}) {
-        const std::optional<JsonReader> attribute = attributes.find(name);
-        if (!attribute) continue;
-        const JsonReader accessor = accessorOf(*attribute, root);
-        verifyVertexType(*attribute, name, accessor);
-        warnIfUnaligned(*attribute, accessor, root);
-        result[std::string(name)] = attribute->integer();
+    for (const std::string& name : attributes.keys()) {
+        if (!isKnown(name)) continue;
+        const JsonReader attribute = attributes.at(name);
+        const JsonReader accessor = accessorOf(attribute, root);
+        verifyVertexType(attribute, name, accessor);
+        warnIfUnaligned(attribute, accessor, root);
+        result[name] = attribute.integer();
     }
     return result;
 }
@@ -92,7 +133,7 @@ json verifyPrimitive(const JsonReader& primitive, const JsonReader& root) {
         verifyCounts(attributes, root, vertexCount);
         verifyTargets(primitive, root, vertexCount);
     }
-    warnOfAttributes(attributes);
+    warnOfColors(attributes);
     if (const std::optional<JsonReader> indices = primitive.find("indices"))
         result["attributes"][kIndicesAttribute] = verifyIndices(*indices, root);
     if (const std::optional<JsonReader> material = primitive.find("material"))

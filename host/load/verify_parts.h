@@ -2,6 +2,7 @@
 #pragma once
 
 #include "load/json_reader.h"
+#include "scene/scene.h"
 
 #include <limits>
 
@@ -16,7 +17,6 @@ void verifyAsset(const JsonReader& root);
 
 [[nodiscard]] nlohmann::json verifyBufferView(const JsonReader& view, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyAccessor(const JsonReader& accessor, const JsonReader& root);
-[[nodiscard]] nlohmann::json verifyMaterial(const JsonReader& material, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyMesh(const JsonReader& mesh, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyCamera(const JsonReader& camera, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyNode(const JsonReader& node, const JsonReader& root);
@@ -28,7 +28,12 @@ void verifyAsset(const JsonReader& root);
 /// That nodes form trees (no node has two parents, none is its own ancestor) and that scenes list roots.
 void verifyHierarchy(const JsonReader& root);
 
-/// References among what is not supported yet (textures, images, samplers, skins, animations).
+/// A material's use of a texture (textureInfo); its texture and set are the file's numbers. No texture, with a warning,
+/// where there is no image to use.
+[[nodiscard]] TextureMap verifyTextureMap(const JsonReader& info, const JsonReader& root);
+void verifyImages(const JsonReader& root);
+
+/// References among what is not supported yet (skins, animations).
 void verifyReferences(const JsonReader& root);
 
 /// The lights of KHR_lights_punctual, and the one that a node refers to.

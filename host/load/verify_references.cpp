@@ -10,16 +10,6 @@ void verifyReference(const JsonReader& owner, std::string_view key, const JsonRe
         (void)reference->index(root.sizeOf(target), target);
 }
 
-void verifyTextureSources(const JsonReader& root) {
-    for (std::size_t i = 0; i < root.sizeOf("textures"); ++i) {
-        const JsonReader texture = root.at("textures").element(i);
-        verifyReference(texture, "source", root, "images");
-        verifyReference(texture, "sampler", root, "samplers");
-    }
-    for (std::size_t i = 0; i < root.sizeOf("images"); ++i)
-        verifyReference(root.at("images").element(i), "bufferView", root, "bufferViews");
-}
-
 void verifySkins(const JsonReader& root) {
     for (std::size_t i = 0; i < root.sizeOf("skins"); ++i) {
         const JsonReader skin = root.at("skins").element(i);
@@ -51,7 +41,6 @@ void verifyAnimations(const JsonReader& root) {
 } // namespace
 
 void verifyReferences(const JsonReader& root) {
-    verifyTextureSources(root);
     verifySkins(root);
     verifyAnimations(root);
 }
