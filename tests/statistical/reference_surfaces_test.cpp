@@ -39,7 +39,7 @@ RenderSettings longPaths(std::uint32_t samples) {
     return settings;
 }
 
-/// The tables of albedos hold 0.5 %; a path of glass meets them twice and more.
+/// Compensated from tables of albedos, which hold 0.5 %.
 TEST(ReferenceSurfaces, WhiteSpheresVanishInAWhiteFurnace) {
     Material metal;
     metal.metallic = 1.0;
@@ -47,11 +47,12 @@ TEST(ReferenceSurfaces, WhiteSpheresVanishInAWhiteFurnace) {
     coated.specular = 1.0;
     for (const double roughness : {0.0, 0.3, 0.6, 1.0}) {
         SCOPED_TRACE(roughness);
+        // The rougher, the more samples are lost between microfacets and made up for by the others.
+        const std::uint32_t samples = roughness < 0.5 ? 300 : roughness < 1.0 ? 1500 : 5000;
         for (Material material : {metal, coated, whiteGlass(roughness, 0.0), whiteGlass(roughness, 1.0)}) {
             SCOPED_TRACE(material.thickness);
             material.roughness = roughness;
-            expectRadiance(renderTotal(sphereInFurnace(material).scene, longPaths(300)), Vec3d(1.0),
-                           material.thickness > 0.0 ? 0.01 : 0.005);
+            expectRadiance(renderTotal(sphereInFurnace(material).scene, longPaths(samples)), Vec3d(1.0), 0.005);
         }
     }
 }
@@ -203,7 +204,7 @@ EnvironmentMap gradientMap() {
     EnvironmentMap map{"gradient", 16, 8, {}};
     for (std::uint32_t row = 0; row < 8; ++row)
         for (std::uint32_t column = 0; column < 16; ++column)
-            map.texels.push_back(Vec3f(0.05f * float(row), 0.1f, 0.3f) + (row == 2 && column == 5 ? 20.0f : 0.0f));
+            map.texels.push_back(Vec3f(0.1f * float(row + 3), 0.4f, 0.5f) + (row == 2 && column == 5 ? 8.0f : 0.0f));
     return map;
 }
 
@@ -222,15 +223,15 @@ Scene everySurface() {
     Material metal;
     metal.baseColor = {0.9, 0.7, 0.3};
     metal.metallic = 1.0;
-    metal.roughness = 0.5;
+    metal.roughness = 0.7;
     Material coated;
     coated.baseColor = {0.2, 0.4, 0.8};
     coated.specular = 1.0;
-    coated.roughness = 0.4;
-    Material rough = whiteGlass(0.5, 1.0);
+    coated.roughness = 0.7;
+    Material rough = whiteGlass(0.7, 1.0);
     rough.attenuationColor = {0.5, 0.9, 0.7};
     rough.attenuationDistance = 0.5;
-    Material sheet = whiteGlass(0.4, 0.0);
+    Material sheet = whiteGlass(0.7, 0.0);
     sheet.transmission = 0.6;
     sheet.metallic = 0.2;
     sheet.alphaMode = AlphaMode::blend;
@@ -263,10 +264,10 @@ TEST(ReferenceSurfaces, EveryWayToFindLightHasTheSameMean) {
         {"float", LightSampling::mis, LightChoice::one, Precision::singlePrecision, 128},
         {"light samples alone", LightSampling::light, LightChoice::one, Precision::doublePrecision, 256},
         {"scattering alone", LightSampling::bsdf, LightChoice::one, Precision::doublePrecision, 512},
-        {"uniform directions", LightSampling::hemisphere, LightChoice::one, Precision::doublePrecision, 512}};
+        {"uniform directions", LightSampling::hemisphere, LightChoice::one, Precision::doublePrecision, 2000}};
     const Scene scene = everySurface();
     RenderSettings settings = squareImage(24, 256);
-    settings.maxDepth = 6;
+    settings.maxDepth = 4;
     const PixelStatistics expected = renderTotal(scene, settings);
     for (const Way& way : ways) {
         SCOPED_TRACE(way.name);
