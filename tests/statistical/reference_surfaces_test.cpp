@@ -255,16 +255,17 @@ struct Way {
     LightChoice choice;
     Precision precision;
     std::uint32_t samples;
+    double mostError; ///< largest relative standard error
 };
 
 /// Means of the whole image by z-tests against the default, with one error budget.
 TEST(ReferenceSurfaces, EveryWayToFindLightHasTheSameMean) {
     const std::vector<Way> ways = {
-        {"all lights", LightSampling::mis, LightChoice::all, Precision::doublePrecision, 128},
-        {"float", LightSampling::mis, LightChoice::one, Precision::singlePrecision, 128},
-        {"light samples alone", LightSampling::light, LightChoice::one, Precision::doublePrecision, 256},
-        {"scattering alone", LightSampling::bsdf, LightChoice::one, Precision::doublePrecision, 512},
-        {"uniform directions", LightSampling::hemisphere, LightChoice::one, Precision::doublePrecision, 2000}};
+        {"all lights", LightSampling::mis, LightChoice::all, Precision::doublePrecision, 128, 0.01},
+        {"float", LightSampling::mis, LightChoice::one, Precision::singlePrecision, 128, 0.01},
+        {"light samples alone", LightSampling::light, LightChoice::one, Precision::doublePrecision, 256, 0.01},
+        {"scattering alone", LightSampling::bsdf, LightChoice::one, Precision::doublePrecision, 512, 0.01},
+        {"uniform directions", LightSampling::hemisphere, LightChoice::one, Precision::doublePrecision, 2000, 0.03}};
     const Scene scene = everySurface();
     RenderSettings settings = squareImage(24, 256);
     settings.maxDepth = 4;
@@ -279,7 +280,7 @@ TEST(ReferenceSurfaces, EveryWayToFindLightHasTheSameMean) {
         for (int channel = 0; channel < 3; ++channel) {
             const double error = std::hypot(standardError(total, channel), standardError(expected, channel));
             EXPECT_NEAR(total.mean[channel], expected.mean[channel], kSigmas * error) << "channel " << channel;
-            EXPECT_LT(error, 0.01 * expected.mean[channel]) << "too few samples to tell";
+            EXPECT_LT(error, way.mostError * expected.mean[channel]) << "too few samples to tell";
             std::printf("%s, channel %d: %+.3f %%, standard error %.3f %%\n", way.name.c_str(), channel,
                         100 * (total.mean[channel] / expected.mean[channel] - 1), 100 * error / expected.mean[channel]);
         }

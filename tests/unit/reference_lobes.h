@@ -87,16 +87,26 @@ inline PhiloxBlock latticeWords(std::uint32_t index) {
     return {part(1 / kGolden), part(1 / (kGolden * kGolden)), 0, part(1 / (kGolden * kGolden * kGolden))};
 }
 
+/// A mean with the standard error that random numbers in the place of the lattice would leave.
+struct Albedo {
+    Vec3d mean{0.0};
+    Vec3d standardError{0.0};
+};
+
 /// The mean weight of `count` samples, with the scaling of radiance undone: the part of light that is not absorbed.
-template <typename Real> Vec3d albedoOf(const Bsdf<Real>& bsdf, std::uint32_t count) {
-    Vec3d sum(0.0);
+template <typename Real> Albedo albedoOf(const Bsdf<Real>& bsdf, std::uint32_t count) {
+    Albedo albedo;
+    Vec3d squares(0.0);
     for (std::uint32_t i = 0; i < count; ++i) {
         const auto sample = bsdf.sample(latticeWords(i));
         if (!sample) continue;
-        const Real scale = sample->transmits() ? bsdf.radianceScale() : Real(1);
-        sum += Vec3d(sample->weight / scale);
+        const Vec3d weight(sample->weight / (sample->transmits() ? bsdf.radianceScale() : Real(1)));
+        albedo.mean += weight / double(count);
+        squares += weight * weight / double(count);
     }
-    return sum / double(count);
+    const Vec3d variance = glm::max(squares - albedo.mean * albedo.mean, Vec3d(0.0));
+    albedo.standardError = glm::sqrt(variance / double(count));
+    return albedo;
 }
 
 } // namespace isolux::test
