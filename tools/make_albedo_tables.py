@@ -30,7 +30,7 @@ def lattice():
     return (1 - numpy.cos(numpy.pi * s)) / 2, weights / weights.sum(), numpy.cos(azimuth)
 
 
-V, WEIGHTS, COSINES = lattice()
+PARTS = list(zip(*(numpy.array_split(numbers, 4) for numbers in lattice())))  # that stay in a processor's cache
 
 
 def stretched(mu, alpha):
@@ -38,14 +38,14 @@ def stretched(mu, alpha):
     return numpy.sqrt(alpha * alpha * (1 - mu * mu) + mu * mu)
 
 
-def visible_normals(mu, alpha):
+def visible_normals(mu, alpha, v, cosines):
     """Cosines of visible normals to wo, and to the surface (Dupuy and Benyoub 2023); wo lies in the plane y = 0."""
     s = stretched(mu, alpha)
     sine = math.sqrt(1 - mu * mu)
     wx, wz = alpha * sine / s, mu / s
-    z = (1 - V) * (1 + wz) - wz
+    z = (1 - v) * (1 + wz) - wz
     radius = numpy.sqrt(numpy.maximum(1 - z * z, 0))
-    x = radius * COSINES
+    x = radius * cosines
     hx, hy_squared, hz = alpha * (x + wx), alpha * alpha * (radius * radius - x * x), z + wz
     length = numpy.sqrt(hx * hx + hy_squared + hz * hz)
     return (sine * hx + mu * hz) / length, hz / length
@@ -60,10 +60,14 @@ def masking(mu, mu_i, alpha):
 
 def reflection(mu, alpha):
     """E1, and R times E1."""
-    cosine, hz = visible_normals(mu, alpha)
-    mu_i = 2 * cosine * hz - mu
-    weights = WEIGHTS * numpy.where(mu_i > 0, masking(mu, mu_i, alpha), 0)
-    return weights.sum(), (weights * (1 - cosine) ** 5).sum()
+    albedo = weighted = 0
+    for v, weights, cosines in PARTS:
+        cosine, hz = visible_normals(mu, alpha, v, cosines)
+        mu_i = 2 * cosine * hz - mu
+        reflected = weights * numpy.where(mu_i > 0, masking(mu, mu_i, alpha), 0)
+        albedo += reflected.sum()
+        weighted += (reflected * (1 - cosine) ** 5).sum()
+    return albedo, weighted
 
 
 def fresnel(cosine, eta):
@@ -79,13 +83,16 @@ def glass(mu, alpha, eta):
     """Reflection and transmission together; eta = (index beyond)/(index on the side of wo)."""
     if eta == 1:  # straight on, whatever the normal: the weight of wi = -wo
         return masking(mu, mu, alpha)
-    cosine, hz = visible_normals(mu, alpha)
-    mu_r = 2 * cosine * hz - mu
-    reflected = numpy.where(mu_r > 0, masking(mu, mu_r, alpha), 0)
-    f, beyond = fresnel(cosine, eta)
-    mu_t = (cosine / eta - beyond) * hz - mu / eta
-    transmitted = numpy.where(mu_t < 0, masking(mu, mu_t, alpha), 0)
-    return (WEIGHTS * (f * reflected + (1 - f) * transmitted)).sum()
+    albedo = 0
+    for v, weights, cosines in PARTS:
+        cosine, hz = visible_normals(mu, alpha, v, cosines)
+        mu_r = 2 * cosine * hz - mu
+        reflected = numpy.where(mu_r > 0, masking(mu, mu_r, alpha), 0)
+        f, beyond = fresnel(cosine, eta)
+        mu_t = (cosine / eta - beyond) * hz - mu / eta
+        transmitted = numpy.where(mu_t < 0, masking(mu, mu_t, alpha), 0)
+        albedo += (weights * (f * reflected + (1 - f) * transmitted)).sum()
+    return albedo
 
 
 def side_eta(ior, side):

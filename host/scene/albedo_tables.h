@@ -12,7 +12,7 @@ inline constexpr std::uint32_t kAlbedoRoughnesses = 32; ///< nodes in y, of refl
 inline constexpr std::uint32_t kFresnelAngles = 32;     ///< nodes in sqrt(cosine) of the Fresnel table
 inline constexpr std::uint32_t kGlassAngles = 40;
 inline constexpr std::uint32_t kGlassRoughnesses = 24;
-inline constexpr std::uint32_t kGlassIndices = 40;
+inline constexpr std::uint32_t kGlassIndices = 48;
 
 /// Albedo of GGX that reflects everything: [roughness][angle], angle first.
 [[nodiscard]] std::span<const float> reflectionAlbedo();

@@ -1,6 +1,7 @@
 #include "scene/lights.h"
 
 #include "core/error.h"
+#include "scene/emission.h"
 
 #include <fmt/format.h>
 
@@ -11,11 +12,8 @@ namespace {
 
 constexpr std::uint64_t kMaxLightSamples = 0x7FFFFFFFu; // a shading point: their random blocks have 31 bits
 
-/// Flux of a diffuse emitter, as luminance: pi * area * radiance, twice that if both faces emit.
-double emittedPower(const Material& material, double area, bool closed) {
-    const double faces = material.doubleSided && !closed ? 2.0 : 1.0;
-    return faces * kPi * area * luminance(material.emission);
-}
+/// Flux of a diffuse emitter from one face, as luminance.
+double emittedPower(const Vec3d& meanEmission, double area) { return kPi * area * luminance(meanEmission); }
 
 /// Flux of a punctual light; `disc` is the area that one from infinitely far illuminates.
 double punctualPower(const PunctualLight& light, double disc) {
@@ -39,7 +37,8 @@ double triangleArea(const Mat4d& worldFromObject, const Mesh& mesh, const std::a
 /// Collects lights with their powers, in the order of the table.
 class Collector {
 public:
-    Collector(const Scene& scene, const RenderSettings& settings) : scene_(scene), settings_(settings) {
+    Collector(const Scene& scene, const RenderSettings& settings)
+        : scene_(scene), settings_(settings), emission_(scene) {
         table_.lightOf.assign(primitiveCount(scene), kNoLight);
     }
 
@@ -97,16 +96,16 @@ private:
     void addInstance(const Instance& instance) {
         const Mesh& mesh = scene_.meshes[instance.mesh];
         const Material& material = scene_.materials[mesh.material];
+        const double faces = material.doubleSided ? 2.0 : 1.0;
         for (const auto& triangle : mesh.triangles)
-            addPrimitive(material.emits()
-                             ? emittedPower(material, triangleArea(instance.worldFromObject, mesh, triangle), false)
-                             : 0.0);
+            addPrimitive(material.emits() ? faces * emittedPower(emission_.ofTriangle(mesh, triangle),
+                                                                 triangleArea(instance.worldFromObject, mesh, triangle))
+                                          : 0.0);
     }
 
     void addSphere(const Sphere& sphere) {
-        const Material& material = scene_.materials[sphere.material];
         // Seen from outside a sphere's inner face cannot be told apart, so both faces count once.
-        addPrimitive(material.emits() ? emittedPower(material, 4.0 * kPi * sphere.radius * sphere.radius, true) : 0.0);
+        addPrimitive(emittedPower(emission_.ofSphere(sphere.material), 4.0 * kPi * sphere.radius * sphere.radius));
     }
 
     void addDistantAndPunctual() {
@@ -118,12 +117,12 @@ private:
         if (!samplesWhatScatteringFinds()) return;
         const Environment& environment = scene_.environment;
         const auto light = static_cast<std::uint32_t>(table_.lights.size());
-        if (add({LightKind::environment, 0}, environment.solidAngle() * disc * luminance(environment.radiance)))
-            table_.environment = light;
+        if (add({LightKind::environment, 0}, disc * environmentFlux(environment))) table_.environment = light;
     }
 
     const Scene& scene_;
     const RenderSettings& settings_;
+    MeanEmission emission_;
     LightTable table_;
     std::vector<double> powers_;
     std::uint32_t primitive_ = 0;

@@ -41,9 +41,11 @@ struct LightTable {
 
 /// Collects every light of positive power that the settings want sampled, which is none but punctual ones with
 /// LightSampling::hemisphere and ::bsdf, as scattered rays find the others, and none at all where no light is followed.
-/// Emitting primitives of positive area in primitive order, punctual lights in scene order, the environment. Lights
-/// from infinitely far count with what they send through the disc of the scene's radius (Pharr, Jakob and Humphreys
-/// 2023, 12.2 and 12.5). Throws Error if more samples a shading point are asked for than can be numbered (2^31 - 1).
+/// Emitting primitives of positive area in primitive order, punctual lights in scene order, the environment. Surfaces
+/// with an emission map count with its mean over each triangle (`emission.h`), whatever their alpha; those whose mean
+/// is zero, though a texel between two lookups may shine, are left to scattering. Lights from infinitely far count with
+/// what they send through the disc of the scene's radius (Pharr, Jakob and Humphreys 2023, 12.2 and 12.5). Throws Error
+/// if more samples a shading point are asked for than can be numbered (2^31 - 1).
 [[nodiscard]] LightTable buildLightTable(const Scene& scene, const RenderSettings& settings = {});
 
 } // namespace isolux
