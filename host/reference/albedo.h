@@ -36,9 +36,10 @@ template <typename Real>
     return glm::mix(row(y.low), row(y.low + 1), y.part);
 }
 
-/// Where an angle's cosine lies among the nodes of the reflection and glass tables: as its ratio to alpha near 0.
+/// Where an angle's cosine lies among the nodes of the reflection and glass tables: by its ratio to alpha near 0.
 template <typename Real> [[nodiscard]] Real anglePlace(Real cosine, Real alpha) {
-    return cosine * (1 + alpha) / (cosine + alpha);
+    const Real m = std::sqrt(cosine), y = std::sqrt(alpha);
+    return m * (1 + y) / (m + y);
 }
 
 /// Albedo of GGX that reflects everything.
@@ -57,7 +58,7 @@ template <typename Real> [[nodiscard]] Real fresnelAlbedoAt(Real cosine, Real al
 template <typename Real> [[nodiscard]] Real glassAlbedoAt(Real cosine, Real alpha, Real ior, Side side) {
     constexpr std::size_t kIndexSize = std::size_t{kGlassAngles} * kGlassRoughnesses;
     const NodePair<Real> x(anglePlace(cosine, alpha), kGlassAngles), y(std::sqrt(alpha), kGlassRoughnesses);
-    const NodePair<Real> z((ior - 1) / (ior + 1), kGlassIndices);
+    const NodePair<Real> z(std::sqrt((ior - 1) / (ior + 1)), kGlassIndices);
     const std::size_t sideStart = side == Side::front ? 0 : kIndexSize * kGlassIndices;
     const auto slice = [&](std::uint32_t index) {
         return lookUp(glassAlbedo().subspan(sideStart + index * kIndexSize, kIndexSize), kGlassAngles, x, y);
