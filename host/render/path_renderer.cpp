@@ -185,6 +185,7 @@ void PathRenderer::createKernel() {
                              {shared::kSpecTraversalCounts, options_.counts == TraversalCounts::on ? 1u : 0u}};
     const Specialization methods = specializeMethods(settings_, parameters_);
     source.specialization.insert(methods.begin(), methods.end());
+    statistics_.specialization = source.specialization;
     kernel_ = std::make_unique<Kernel>(device_, source);
     scene_->bindTo(*kernel_);
     kernel_->bind(shared::kBindRender, *parameterBuffer_);
