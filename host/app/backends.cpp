@@ -102,12 +102,12 @@ SceneRun openScene(const SceneOptions& options, const MethodOptions& methods, st
     chosen.width = defaultWidth;
     run.scene = loadScene(options);
     run.environment = applyEnvironment(run.scene, options.environment, chosen);
+    run.settings = settingsFor(run.scene, options, chosen);
+    checkMethods(run.settings, run.scene);
     if (run.environment.origin == EnvironmentOrigin::defaultSky)
         spdlog::warn("{}: no light: it gets a white sky; --environment R,G,B or FILE gives it another, --environment "
                      "none leaves it dark",
                      options.file);
-    run.settings = settingsFor(run.scene, options, chosen);
-    checkMethods(run.settings, run.scene);
     return run;
 }
 

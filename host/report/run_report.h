@@ -65,7 +65,7 @@ enum class SkyOrigin { chosen, byDefault };
 struct EnvironmentSummary {
     Vec3d radiance{0.0};   ///< that of the map is multiplied by it
     std::string extent;    ///< in words: "sphere", "upper half"
-    std::string map;       ///< its file or name; empty: the radiance is the same in all directions
+    std::string map{};     ///< its file or name; empty: the radiance is the same in all directions
     double rotation = 0.0; ///< of the map, degrees counter-clockwise seen from above
     SkyOrigin origin = SkyOrigin::chosen;
 };
