@@ -49,6 +49,18 @@ std::uint32_t findCamera(const Scene& scene, const std::string& text) {
                                           matches.empty() ? "no" : "more than one", text, names));
 }
 
+/// The folder that was asked for is also that of the caches which drivers keep by themselves (Mesa's and NVIDIA's):
+/// where they have one, they tell nothing that could be kept here. Not if nothing can be written there: Mesa would do
+/// without, and 22.3 then compiles for every dispatch.
+void keepDriverCachesIn(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    if (!isWritableFolder(folder)) return;
+    const std::filesystem::path absolute = std::filesystem::absolute(folder, ignored);
+    for (const char* variable : {"MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"})
+        setDefaultVariable(variable, absolute.string());
+}
+
 void checkSettings(const RenderSettings& settings) {
     if (settings.width == 0 || settings.height == 0 || settings.width > kMaxEdge || settings.height > kMaxEdge)
         throwBadInput("image size", fmt::format("{} x {}: edges must lie between 1 and {} pixels", settings.width,
@@ -85,10 +97,12 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
     command.add_option("--progress", options.progress, "Bar or lines, JSON lines for programs, or nothing")
         ->check(CLI::IsMember({"auto", "json", "none"}))
         ->capture_default_str();
-    CLI::Option* cache = command.add_option("--cache-dir", options.cacheFolder)
-                             ->type_name("DIR")
-                             ->description("Where drivers' compiled kernels are kept (default: the user's cache)");
-    command.add_flag("--no-cache", options.noCache, "Neither read nor keep compiled kernels")->excludes(cache);
+    CLI::Option* cache =
+        command.add_option("--cache-dir", options.cacheFolder)
+            ->type_name("DIR")
+            ->description("Where compiled kernels are kept, also by drivers (default: the user's cache)");
+    command.add_flag("--no-cache", options.noCache, "Neither read nor keep compiled kernels; drivers may all the same")
+        ->excludes(cache);
     command.add_flag("--validation", options.validation,
                      "Run under the Vulkan validation layers; any message is a failure");
     command.add_flag("-q,--quiet", options.quiet, "Print errors alone");
@@ -124,6 +138,7 @@ ProgressDisplay progressDisplay(const SceneOptions& options) {
 }
 
 DeviceOptions deviceOptions(const SceneOptions& options) {
+    if (!options.cacheFolder.empty()) keepDriverCachesIn(options.cacheFolder);
     std::filesystem::path cache = options.cacheFolder;
     if (cache.empty() && !options.noCache) cache = userCacheFolder();
     return {options.device, options.validation ? Validation::on : Validation::off, cache};

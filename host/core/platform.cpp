@@ -133,6 +133,13 @@ double processSeconds() {
     return sinceLoaded.seconds();
 }
 
+bool isWritableFolder(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored) && ::access(path.c_str(), W_OK | X_OK) == 0;
+}
+
+void setDefaultVariable(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 0); }
+
 std::filesystem::path userCacheFolder() {
     const std::filesystem::path folder = cacheFolderOfAll();
     return folder.empty() ? folder : folder / "isolux";
