@@ -2,6 +2,7 @@
 
 #include "app/method_names.h"
 #include "core/log.h"
+#include "core/platform.h"
 #include "core/stopwatch.h"
 #include "reference/reference.h"
 #include "render/path_renderer.h"
@@ -29,12 +30,32 @@ void addStatistics(RunReport& report, const RenderStatistics& statistics) {
     report.timings.device = statistics.deviceSeconds;
     report.dispatchCount = statistics.dispatchCount;
     report.longestDispatch = statistics.longestDispatchSeconds;
+    report.sceneBytes = statistics.sceneBytes;
+    report.specialization = statistics.specialization;
+}
+
+/// Notes when the first samples were done.
+ProgressCallback noting(std::optional<double>& firstPixel, const ProgressCallback& callback) {
+    return [&firstPixel, callback](double fraction) {
+        if (!firstPixel && fraction > 0.0) firstPixel = processSeconds();
+        return callback(fraction);
+    };
+}
+
+/// What the kernels have of the scene and of the options.
+std::vector<FeatureUse> featuresOf(const SceneRun& run, const RenderStatistics& statistics) {
+    std::vector<FeatureUse> features = explainScene(run.scene, run.settings, statistics.features);
+    const std::vector<FeatureUse> methods = explainMethods(statistics.specialization);
+    features.insert(features.end(), methods.begin(), methods.end());
+    return features;
 }
 
 void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const BackendOptions& options,
                     ProgressBar& bar) {
     bar.stage("opening the device");
+    const Stopwatch opening;
     const Device device(options.device);
+    report.timings.open = opening.seconds();
     report.deviceName = device.description().name;
     report.driverName = device.description().driverName;
     report.driverVersion = device.description().driverVersion;
@@ -44,11 +65,13 @@ void renderOnDevice(Film& film, RunReport& report, const SceneRun& run, const Ba
     renderOptions.counts = options.counts;
     renderOptions.stopping = options.stopping;
     renderOptions.dispatchSeconds = options.dispatchSeconds;
+    renderOptions.features = chosenFeatures(options.features, run.scene, run.settings);
     renderOptions.stage = [&](std::string_view name) { bar.stage(name); };
     PathRenderer renderer(device, run.scene, run.settings, renderOptions);
+    report.features = featuresOf(run, renderer.statistics());
     try {
         const ScopedTimer timer(report.timings.render);
-        renderer.render(film, bar.callback());
+        renderer.render(film, noting(report.timings.firstPixel, bar.callback()));
     } catch (...) {
         addStatistics(report, renderer.statistics());
         throw;
@@ -67,7 +90,7 @@ void renderOnProcessor(Film& film, RunReport& report, const SceneRun& run, const
     reference.aovs = options.aovs;
     reference.counts = options.counts;
     reference.stopping = options.stopping;
-    film = renderReference(run.scene, run.settings, reference, bar.callback());
+    film = renderReference(run.scene, run.settings, reference, noting(report.timings.firstPixel, bar.callback()));
 }
 
 } // namespace
@@ -78,9 +101,13 @@ SceneRun openScene(const SceneOptions& options, const MethodOptions& methods, st
     RenderSettings chosen = chosenMethods(methods);
     chosen.width = defaultWidth;
     run.scene = loadScene(options);
+    run.environment = applyEnvironment(run.scene, options.environment, chosen);
     run.settings = settingsFor(run.scene, options, chosen);
     checkMethods(run.settings, run.scene);
-    run.environmentGiven = !options.environment.empty();
+    if (run.environment.origin == EnvironmentOrigin::defaultSky)
+        spdlog::warn("{}: no light: it gets a white sky; --environment R,G,B or FILE gives it another, --environment "
+                     "none leaves it dark",
+                     options.file);
     return run;
 }
 
@@ -96,10 +123,7 @@ RunReport describeRun(const SceneRun& run, const SceneOptions& options) {
     report.methods = methodsOf(run.settings);
     report.timings.load = run.loadSeconds;
     report.camera = run.scene.cameras[run.settings.camera].name;
-    const Environment& environment = run.scene.environment;
-    if (environment.emits())
-        report.environment = EnvironmentSummary{
-            environment.radiance, environment.extent == EnvironmentExtent::sphere ? "sphere" : "upper half"};
+    report.environment = summariseEnvironment(run.scene, run.environment);
     return report;
 }
 

@@ -1,6 +1,7 @@
 // Loading a scene and rendering it with either backend, with the report filled in on the way.
 #pragma once
 
+#include "app/feature_options.h"
 #include "app/method_options.h"
 #include "app/scene_options.h"
 #include "core/progress.h"
@@ -22,13 +23,14 @@ struct BackendOptions {
     TraversalCounts counts = TraversalCounts::off;
     StoppingRule stopping;
     double dispatchSeconds = RenderOptions{}.dispatchSeconds;
+    FeatureOptions features;
 };
 
 /// A loaded scene with what is to be rendered of it.
 struct SceneRun {
     Scene scene;
     RenderSettings settings;
-    bool environmentGiven = false; ///< by the options, instead of the file's
+    EnvironmentChoice environment;
     double loadSeconds = 0.0;
 };
 

@@ -18,10 +18,9 @@ constexpr const char* kMeanSamples = "isolux/sampleMean";
 
 /// The options that decide the image, beside the seed and the samples that have entries of their own.
 std::string optionsText(const SceneRun& run, const RunReport& report) {
-    const Vec3d& sky = run.scene.environment.radiance;
     std::string text = fmt::format("--backend {} --size {}x{} --camera {}", report.backend, report.width, report.height,
                                    run.settings.camera);
-    if (run.environmentGiven) text += fmt::format(" --environment {},{},{}", sky.x, sky.y, sky.z);
+    text += run.environment.options;
     if (report.maxDepth) text += fmt::format(" --max-depth {}", *report.maxDepth);
     for (const MethodChoice& method : report.methods) text += fmt::format(" --{} {}", method.option, method.value);
     if (report.timeLimit) text += fmt::format(" --time {}", *report.timeLimit);

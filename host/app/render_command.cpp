@@ -36,6 +36,8 @@ struct RenderCommand {
     std::string sampleMap;
     bool samplesGiven = false;
     bool statistics = false;
+    bool explain = false;
+    FeatureOptions features;
 };
 
 constexpr std::uint32_t kDefaultWidth = 512;
@@ -49,6 +51,7 @@ BackendOptions backendOptions(const RenderCommand& command) {
     options.counts = command.methods.counts();
     options.stopping = command.rule;
     options.dispatchSeconds = 1e-3 * command.scene.dispatchMilliseconds;
+    options.features = command.features;
     return options;
 }
 
@@ -169,6 +172,7 @@ ExitCode run(RenderCommand command) {
         fmt::print("{}", toText(report));
     else
         for (const std::string& explanation : report.explanations) spdlog::warn("{}", explanation);
+    if (command.explain) fmt::print("{}", toText(report.features));
     const std::optional<Error> unwritten = writeAll(command, film, scene, report, completion);
     // Whoever runs this again asks why the render stopped before why a file could not be replaced.
     if (unwritten && completion == Completion::whole) throw Error(*unwritten);
@@ -195,6 +199,8 @@ void addOutputOptions(CLI::App& sub, RenderCommand& command) {
     sub.add_option("--sample-map", command.sampleMap,
                    "Also write in false colour how many samples each pixel took: .png, .exr or .hdr");
     sub.add_flag("--stats", command.statistics, "Print the report even with --quiet");
+    sub.add_flag("--explain", command.explain,
+                 "Print what was left out of the kernels for this scene and these options, and why");
 }
 
 } // namespace
@@ -212,6 +218,7 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
         ->capture_default_str();
     addStoppingOptions(*sub, command->stopping);
     addMethodOptions(*sub, command->methods);
+    addFeatureOptions(*sub, command->features);
     sub->footer("Ctrl-C keeps what is done: the samples finished so far are written.\n"
                 "Exit codes: 0 done, 1 failed, 2 bad usage or input, 75 try again (device lost, out of memory), "
                 "130 interrupted.\n"
@@ -220,6 +227,7 @@ void addRenderCommand(CLI::App& app, ExitCode& result) {
                 "  isolux render scene.gltf -o image.exr --spp 1024 --seed 7 --json report.json\n"
                 "  isolux render scene.gltf -o image.exr --aov all --size 1920x1080 --camera Top\n"
                 "  isolux render scene.gltf -o image.exr --time 60 --environment 0.5,0.6,0.8\n"
+                "  isolux render scene.gltf -o image.exr --environment sky.hdr --environment-rotation 90\n"
                 "  isolux render scene.gltf -o image.exr --adaptive 0.05 --spp 4096 --sample-map samples.png\n"
                 "  isolux render scene.gltf -o image.exr --until-error 0.02 --pixel-sampler sobol\n"
                 "  isolux render scene.gltf -o image.exr --light-sampling light --max-depth 3 --roulette off\n"

@@ -1,5 +1,7 @@
 // `isolux scene`: what is in a file, what of it is supported, and what it costs to hold.
 #include "app/commands.h"
+#include "app/environment_options.h"
+#include "app/feature_options.h"
 #include "load/gltf.h"
 #include "pack/packed_scene.h"
 #include "pack/scene_features.h"
@@ -10,7 +12,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <memory>
 
 namespace isolux {
@@ -30,7 +31,8 @@ struct SceneReport {
     std::string file;
     Scene scene;
     PackedScene packed;
-    SceneFeatures features;
+    EnvironmentChoice environment;
+    std::vector<FeatureUse> features;
     LightCounts lights;
     std::size_t triangles = 0;     ///< of all instances
     std::size_t meshTriangles = 0; ///< of all meshes once
@@ -50,12 +52,13 @@ LightCounts countLights(const Scene& scene) {
     return counts;
 }
 
-SceneReport examine(const std::string& file) {
+SceneReport examine(const std::string& file, const EnvironmentOptions& environment) {
     SceneReport report;
     report.file = file;
     report.scene = loadScene(std::filesystem::path(file));
+    report.environment = applyEnvironment(report.scene, environment, {});
     report.packed = packScene(report.scene);
-    report.features = findFeatures(report.scene, {});
+    report.features = explainScene(report.scene, {}, findFeatures(report.scene, {}));
     report.lights = countLights(report.scene);
     report.triangles = primitiveCount(report.scene) - report.scene.spheres.size();
     for (const Mesh& mesh : report.scene.meshes) report.meshTriangles += mesh.triangles.size();
@@ -69,23 +72,6 @@ std::size_t bytesOf(const PackedScene& packed) {
 
 const char* projectionName(const Camera& camera) {
     return camera.projection == Projection::perspective ? "perspective" : "orthographic";
-}
-
-// --- Features: what the kernels keep for this scene, and why the rest is left out ---
-
-struct FeatureLine {
-    const char* name;
-    bool used;
-    const char* absence;
-};
-
-std::array<FeatureLine, 6> featureLines(const SceneFeatures& features) {
-    return {{{"spheres", features.spheres, "no exact sphere"},
-             {"smoothNormals", features.smoothNormals, "no mesh has normals"},
-             {"areaLights", features.areaLights, "nothing emits"},
-             {"punctualLights", features.punctualLights, "no point, spot or directional light"},
-             {"environment", features.environment, "no environment"},
-             {"lightChoice", features.lights == LightCount::many, "fewer than two lights"}}};
 }
 
 void append(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
@@ -122,6 +108,8 @@ std::string contentText(const SceneReport& report) {
     if (!scene.spheres.empty()) text += formatLine("exact spheres", fmt::format("{}", scene.spheres.size()));
     text += formatLine("materials", fmt::format("{}", scene.materials.size()));
     text += formatLine("lights", lightsText(report.lights));
+    if (const auto environment = summariseEnvironment(scene, report.environment))
+        text += formatLine("environment", toText(*environment));
     if (!bounds.empty())
         text += formatLine("bounds", fmt::format("{} to {}", formatColor(bounds.lower), formatColor(bounds.upper)));
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)
@@ -137,17 +125,7 @@ std::string costText(const SceneReport& report) {
     text += formatLine("on devices", fmt::format("{:.1f} KiB, {} four-wide nodes, stack of {} entries",
                                                  static_cast<double>(bytesOf(report.packed)) / 1024.0,
                                                  report.packed.nodes.size(), report.packed.stackBound));
-    std::string used;
-    std::string absent;
-    for (const FeatureLine& feature : featureLines(report.features)) {
-        if (feature.used)
-            append(used, feature.name);
-        else
-            append(absent, fmt::format("{} ({})", feature.name, feature.absence));
-    }
-    text += formatLine("needs", used.empty() ? "nothing beyond triangles" : used);
-    if (!absent.empty()) text += formatLine("left out", absent);
-    return text;
+    return text + toText(report.features);
 }
 
 void printText(const SceneReport& report) {
@@ -198,12 +176,14 @@ ordered_json reportJson(const SceneReport& report) {
                       {"instances", scene.instances.size()},
                       {"materials", scene.materials.size()},
                       {"lights", lightsJson(report.lights)}};
+    const std::optional<EnvironmentSummary> environment = summariseEnvironment(scene, report.environment);
+    json["environment"] = environment ? toJson(*environment) : ordered_json();
     json["bounds"] = bounds.empty() ? ordered_json() : ordered_json{toJson(bounds.lower), toJson(bounds.upper)};
     json["cameras"] = ordered_json::array();
     for (const Camera& camera : scene.cameras) json["cameras"].push_back(cameraJson(camera));
     json["bvh"] = bvhJson(report.packed);
     json["deviceBytes"] = bytesOf(report.packed);
-    for (const FeatureLine& feature : featureLines(report.features)) json["features"][feature.name] = feature.used;
+    json["features"] = toJson(report.features);
     json["unsupported"] = scene.warnings;
     return json;
 }
@@ -214,14 +194,16 @@ void addSceneCommand(CLI::App& app, ExitCode& result) {
     CLI::App* sub = app.add_subcommand("scene", "Show what is in a scene, what it needs and what is not supported");
     auto file = std::make_shared<std::string>();
     auto json = std::make_shared<bool>(false);
+    auto environment = std::make_shared<EnvironmentOptions>();
     sub->add_option("SCENE", *file, "A glTF 2.0 file (.gltf or .glb)")->required();
     sub->add_flag("--json", *json, "Print JSON");
+    addEnvironmentOptions(*sub, *environment);
     sub->footer("\"left out\" is what the kernels are compiled without for this scene.\n"
                 "Examples:\n"
                 "  isolux scene scene.glb\n"
                 "  isolux scene scene.gltf --json");
-    sub->callback([file, json, &result] {
-        const SceneReport report = examine(*file);
+    sub->callback([file, json, environment, &result] {
+        const SceneReport report = examine(*file, *environment);
         if (*json)
             fmt::print("{}", jsonText(reportJson(report)));
         else

@@ -3,11 +3,11 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/platform.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace isolux {
@@ -33,24 +33,6 @@ void parseSize(const std::string& text, RenderSettings& settings) {
     settings.height = edge(cross == std::string::npos ? "" : text.substr(cross + 1));
 }
 
-/// "0.5" or "1,0.9,0.8"
-Vec3d parseRadiance(const std::string& text) {
-    std::vector<double> numbers;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        double value = 0.0;
-        const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        if (error != std::errc{} || stop != text.data() + end || !std::isfinite(value) || value < 0.0 ||
-            value > std::numeric_limits<float>::max())
-            throwBadInput("--environment", fmt::format("'{}' is not a radiance such as 1,1,1", text));
-        numbers.push_back(value);
-        begin = end + 1;
-    }
-    if (numbers.size() == 1) return Vec3d(numbers[0]);
-    if (numbers.size() != 3) throwBadInput("--environment", "give one number or three: R,G,B");
-    return {numbers[0], numbers[1], numbers[2]};
-}
-
 /// The camera of a number, of a name, or of the only name that contains the text.
 std::uint32_t findCamera(const Scene& scene, const std::string& text) {
     if (text.empty()) return 0;
@@ -65,6 +47,18 @@ std::uint32_t findCamera(const Scene& scene, const std::string& text) {
     if (matches.size() == 1) return matches.front();
     throwBadInput("--camera", fmt::format("{} camera matches '{}'; there are: {}",
                                           matches.empty() ? "no" : "more than one", text, names));
+}
+
+/// The folder that was asked for is also that of the caches which drivers keep by themselves (Mesa's and NVIDIA's):
+/// where they have one, they tell nothing that could be kept here. Not if nothing can be written there: Mesa would do
+/// without, and 22.3 then compiles for every dispatch.
+void keepDriverCachesIn(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    if (!isWritableFolder(folder)) return;
+    const std::filesystem::path absolute = std::filesystem::absolute(folder, ignored);
+    for (const char* variable : {"MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"})
+        setDefaultVariable(variable, absolute.string());
 }
 
 void checkSettings(const RenderSettings& settings) {
@@ -92,8 +86,6 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
         command.add_option("--height", options.height, "Image height; by default from the width and the camera");
     command.add_option("--size", options.size, "Both, as WxH")->excludes(width)->excludes(height);
     command.add_option("--camera", options.camera, "Camera by number or part of its name (default: the first)");
-    command.add_option("--environment", options.environment,
-                       "Constant radiance from all directions, R,G,B or one number, instead of the file's");
     command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
     command.add_option("--max-depth", options.maxDepth,
                        "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
@@ -105,18 +97,23 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
     command.add_option("--progress", options.progress, "Bar or lines, JSON lines for programs, or nothing")
         ->check(CLI::IsMember({"auto", "json", "none"}))
         ->capture_default_str();
+    CLI::Option* cache =
+        command.add_option("--cache-dir", options.cacheFolder)
+            ->type_name("DIR")
+            ->description("Where compiled kernels are kept, also by drivers (default: the user's cache)");
+    command.add_flag("--no-cache", options.noCache, "Neither read nor keep compiled kernels; drivers may all the same")
+        ->excludes(cache);
     command.add_flag("--validation", options.validation,
                      "Run under the Vulkan validation layers; any message is a failure");
     command.add_flag("-q,--quiet", options.quiet, "Print errors alone");
     command.add_flag("-v,--verbose", options.verbose, "Say what is being done");
+    addEnvironmentOptions(command, options.environment);
 }
 
 Scene loadScene(const SceneOptions& options) {
     setVerbosity(options.quiet ? Verbosity::quiet : options.verbose ? Verbosity::verbose : Verbosity::normal);
     Scene scene = loadScene(std::filesystem::path(options.file));
     for (const std::string& warning : scene.warnings) spdlog::warn("{}: {}", options.file, warning);
-    if (!options.environment.empty())
-        scene.environment = {parseRadiance(options.environment), EnvironmentExtent::sphere};
     return scene;
 }
 
@@ -141,7 +138,10 @@ ProgressDisplay progressDisplay(const SceneOptions& options) {
 }
 
 DeviceOptions deviceOptions(const SceneOptions& options) {
-    return {options.device, options.validation ? Validation::on : Validation::off};
+    if (!options.cacheFolder.empty()) keepDriverCachesIn(options.cacheFolder);
+    std::filesystem::path cache = options.cacheFolder;
+    if (cache.empty() && !options.noCache) cache = userCacheFolder();
+    return {options.device, options.validation ? Validation::on : Validation::off, cache};
 }
 
 } // namespace isolux

@@ -1,6 +1,7 @@
 // The options that say what to render and on which device, shared by the commands that render.
 #pragma once
 
+#include "app/environment_options.h"
 #include "app/progress_bar.h"
 #include "gpu/device.h"
 #include "load/gltf.h"
@@ -19,9 +20,9 @@ struct SceneOptions {
     std::string file;
     std::optional<std::uint32_t> width;
     std::optional<std::uint32_t> height;
-    std::string size;        ///< "WxH" instead of the two
-    std::string camera;      ///< number or part of a name; empty: the first
-    std::string environment; ///< "R,G,B" or one number; empty: what the file has
+    std::string size;   ///< "WxH" instead of the two
+    std::string camera; ///< number or part of a name; empty: the first
+    EnvironmentOptions environment;
     std::optional<std::uint32_t> maxDepth;
     std::uint32_t samples = 64;
     std::uint32_t firstSample = 0;
@@ -29,6 +30,8 @@ struct SceneOptions {
     std::string device;
     double dispatchMilliseconds = 70.0;
     std::string progress = "auto";
+    std::string cacheFolder; ///< of compiled kernels; empty: the user's
+    bool noCache = false;
     bool validation = false;
     bool quiet = false;
     bool verbose = false;
@@ -37,7 +40,7 @@ struct SceneOptions {
 /// Adds SCENE, --spp, --width, --seed and the others, with `options`' values as defaults.
 void addSceneOptions(CLI::App& command, SceneOptions& options);
 
-/// Loads the scene, logs its warnings and puts in the environment that the options give.
+/// Loads the scene and logs its warnings.
 [[nodiscard]] Scene loadScene(const SceneOptions& options);
 
 /// `methods` with the options' camera, size, samples and depth: a size that is not given follows from the other by the

@@ -23,6 +23,7 @@ namespace {
 struct VerifyCommand {
     SceneOptions scene;
     MethodOptions methods;
+    FeatureOptions features;
     double tolerance = 1e-3;
     double minAgreement = 0.999;
     double maxRelativeBias = 1e-4;
@@ -82,6 +83,7 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
     options.signatures = PathSignatures::on;
     options.counts = command.methods.counts();
     options.dispatchSeconds = 1e-3 * command.scene.dispatchMilliseconds;
+    options.features = chosenFeatures(command.features, run.scene, run.settings);
     PathRenderer renderer(device, run.scene, run.settings, options);
     Outcome outcome;
     outcome.methods = methodsOf(run.settings);
@@ -161,6 +163,7 @@ void addVerifyCommand(CLI::App& app, ExitCode& result) {
     command->scene.samples = 16;
     addSceneOptions(*sub, command->scene);
     addMethodOptions(*sub, command->methods);
+    addFeatureOptions(*sub, command->features);
     sub->add_option("--tolerance", command->tolerance, "Relative difference that rounding may cause in a pixel")
         ->check(finiteNumber())
         ->capture_default_str();

@@ -1,13 +1,18 @@
 #include "core/platform.h"
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
+#include <optional>
+#include <string>
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -51,6 +56,43 @@ void flushToDisk(const std::filesystem::path& path, int openFlags) {
     if (result != 0 && error != EINVAL) throwFileError(path, "cannot flush to disk");
 }
 
+/// For systems that do not tell when a process began.
+const Stopwatch sinceLoaded;
+
+/// Field 22 of /proc/self/stat (proc(5)): clock ticks from the machine's start to the process's.
+std::optional<double> startTicks() {
+    std::ifstream file("/proc/self/stat");
+    std::string text;
+    if (!std::getline(file, text)) return std::nullopt;
+    constexpr int kFieldsAfterName = 20; // the name in brackets may hold blanks: counted from behind it
+    std::size_t at = text.rfind(')');
+    for (int i = 0; i < kFieldsAfterName && at != std::string::npos; ++i) at = text.find(' ', at + 1);
+    if (at == std::string::npos) return std::nullopt;
+    return std::strtod(text.c_str() + at, nullptr);
+}
+
+/// An environment variable that names an absolute path; others are to be ignored (XDG Base Directory Specification).
+std::filesystem::path folderIn(const char* variable) {
+    const char* text = std::getenv(variable);
+    const std::filesystem::path path = text == nullptr ? "" : text;
+    return path.is_absolute() ? path : std::filesystem::path();
+}
+
+std::filesystem::path cacheFolderOfAll() {
+#if defined(_WIN32)
+    return folderIn("LOCALAPPDATA");
+#else
+#if !defined(__APPLE__)
+    if (const std::filesystem::path chosen = folderIn("XDG_CACHE_HOME"); !chosen.empty()) return chosen;
+    constexpr const char* kInHome = ".cache";
+#else
+    constexpr const char* kInHome = "Library/Caches";
+#endif
+    const std::filesystem::path home = folderIn("HOME");
+    return home.empty() ? home : home / kInHome;
+#endif
+}
+
 } // namespace
 
 void catchInterrupts() {
@@ -79,5 +121,28 @@ void replaceFile(const std::filesystem::path& temporary, const std::filesystem::
 }
 
 unsigned long processId() { return static_cast<unsigned long>(::getpid()); }
+
+double processSeconds() {
+#if defined(__linux__)
+    timespec now{};
+    const std::optional<double> ticks = startTicks();
+    if (ticks && clock_gettime(CLOCK_BOOTTIME, &now) == 0)
+        return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+               *ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+#endif
+    return sinceLoaded.seconds();
+}
+
+bool isWritableFolder(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored) && ::access(path.c_str(), W_OK | X_OK) == 0;
+}
+
+void setDefaultVariable(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 0); }
+
+std::filesystem::path userCacheFolder() {
+    const std::filesystem::path folder = cacheFolderOfAll();
+    return folder.empty() ? folder : folder / "isolux";
+}
 
 } // namespace isolux

@@ -1,7 +1,9 @@
-// Everything that differs between operating systems, in one place: interrupts, terminals, durable file replacement.
+// Everything that differs between operating systems, in one place: interrupts, terminals, durable file replacement,
+// processes, the user's folders.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace isolux {
 
@@ -18,5 +20,18 @@ void replaceFile(const std::filesystem::path& temporary, const std::filesystem::
 
 /// A number that differs between running processes, for temporary names.
 [[nodiscard]] unsigned long processId();
+
+/// Since the process began, loading of its libraries included, to about 0.01 s.
+[[nodiscard]] double processSeconds();
+
+/// Whether it is a folder in which this process may make files.
+[[nodiscard]] bool isWritableFolder(const std::filesystem::path& path);
+
+/// Sets an environment variable of this process unless it has a value. Not while other threads read any.
+void setDefaultVariable(const char* name, const std::string& value);
+
+/// Where this user's programs keep what can be made again, this one's own folder in it; it may not exist. Empty if
+/// there is no such place.
+[[nodiscard]] std::filesystem::path userCacheFolder();
 
 } // namespace isolux

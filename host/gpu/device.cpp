@@ -164,6 +164,13 @@ DeviceDescription describe(VkPhysicalDevice device, std::uint32_t index) {
     return description;
 }
 
+DriverIdentity identityOf(const VkPhysicalDeviceProperties& properties) {
+    DriverIdentity identity{properties.vendorID, properties.deviceID, properties.driverVersion, {}};
+    std::copy(std::begin(properties.pipelineCacheUUID), std::end(properties.pipelineCacheUUID),
+              identity.pipelineCacheUuid.begin());
+    return identity;
+}
+
 std::string lowercase(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -184,7 +191,8 @@ struct Device::MessageLog {
     std::vector<std::string> messages;
 };
 
-Device::Device(const DeviceOptions& options) : messages_(std::make_unique<MessageLog>()) {
+Device::Device(const DeviceOptions& options)
+    : messages_(std::make_unique<MessageLog>()), cacheFolder_(options.cacheFolder) {
     try {
         createInstance(options.validation);
         choosePhysicalDevice(options.selector);
@@ -242,6 +250,7 @@ void Device::choosePhysicalDevice(const std::string& selector) {
         best = preference(properties.deviceType);
         physical_ = devices[i];
         description_ = description;
+        identity_ = identityOf(properties);
     }
     if (physical_ != VK_NULL_HANDLE) return;
     if (selector.empty()) throwFailure("Vulkan", "no usable device among these:" + seen);

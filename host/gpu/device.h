@@ -1,6 +1,7 @@
 // A Vulkan device chosen among those present, with one compute queue.
 #pragma once
 
+#include "gpu/pipeline_cache.h"
 #include "gpu/vulkan.h"
 
 #include <cstdint>
@@ -41,6 +42,7 @@ enum class Validation { off, on };
 struct DeviceOptions {
     std::string selector; ///< index or part of a name; empty: the best usable device
     Validation validation = Validation::off;
+    std::filesystem::path cacheFolder{}; ///< of compiled pipelines; empty: none are kept
 };
 
 class Device {
@@ -55,6 +57,8 @@ public:
     [[nodiscard]] std::uint32_t queueFamily() const { return queueFamily_; }
     [[nodiscard]] const DeviceDescription& description() const { return description_; }
     [[nodiscard]] const DeviceLimits& limits() const { return description_.limits; }
+    [[nodiscard]] const DriverIdentity& identity() const { return identity_; }
+    [[nodiscard]] const std::filesystem::path& cacheFolder() const { return cacheFolder_; }
 
     /// The first memory type allowed by `typeBits` with all of `wanted`, else with all of `required`. Throws Error.
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t typeBits, VkMemoryPropertyFlags required,
@@ -82,6 +86,8 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queueFamily_ = 0;
     DeviceDescription description_;
+    DriverIdentity identity_;
+    std::filesystem::path cacheFolder_;
     VkPhysicalDeviceMemoryProperties memory_{};
 };
 

@@ -3,6 +3,53 @@
 #include <algorithm>
 
 namespace isolux {
+namespace {
+
+/// Of VkPipelineCacheHeaderVersionOne: a driver that keeps nothing returns this much.
+constexpr std::size_t kEmptyCacheBytes = 32;
+
+/// A driver's cache of one pipeline, from its file and back to it. Null where none is kept, or the driver has none.
+class PipelineCache {
+public:
+    PipelineCache(const Device& device, const KernelSource& source)
+        : device_(&device),
+          folder_(device.cacheFolder()), key_{device.identity(), hashKernel(source.spirv, source.specialization)} {
+        if (!folder_.kept()) return;
+        loaded_ = folder_.load(key_);
+        if (!create(loaded_) && !create({})) loaded_.clear();
+    }
+    [[nodiscard]] VkPipelineCache handle() const { return cache_.get(); }
+
+    /// Keeps what the driver has added.
+    void store() const {
+        if (cache_.get() == VK_NULL_HANDLE) return;
+        std::size_t size = 0;
+        if (vkGetPipelineCacheData(device_->handle(), cache_.get(), &size, nullptr) != VK_SUCCESS) return;
+        std::vector<std::byte> data(size);
+        if (vkGetPipelineCacheData(device_->handle(), cache_.get(), &size, data.data()) != VK_SUCCESS) return;
+        data.resize(size);
+        if (size > kEmptyCacheBytes && data != loaded_) folder_.store(key_, data);
+    }
+
+private:
+    bool create(std::span<const std::byte> data) {
+        auto info = vulkanStruct<VkPipelineCacheCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO);
+        info.initialDataSize = data.size();
+        info.pInitialData = data.data();
+        VkPipelineCache cache = VK_NULL_HANDLE;
+        if (vkCreatePipelineCache(device_->handle(), &info, nullptr, &cache) != VK_SUCCESS) return false;
+        cache_ = {device_->handle(), cache, vkDestroyPipelineCache};
+        return true;
+    }
+
+    const Device* device_;
+    PipelineFolder folder_;
+    PipelineKey key_;
+    std::vector<std::byte> loaded_;
+    DeviceHandle<VkPipelineCache> cache_;
+};
+
+} // namespace
 
 Kernel::Kernel(const Device& device, const KernelSource& source)
     : device_(&device), bindings_(reflectSpirv(source.spirv).bindings) {
@@ -56,10 +103,12 @@ void Kernel::createPipeline(const KernelSource& source) {
     info.stage.pName = "main";
     info.stage.pSpecializationInfo = &specialization;
     info.layout = layout_.get();
+    const PipelineCache cache(*device_, source);
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+    check(vkCreateComputePipelines(device_->handle(), cache.handle(), 1, &info, nullptr, &pipeline),
           "vkCreateComputePipelines");
     pipeline_ = {device_->handle(), pipeline, vkDestroyPipeline};
+    cache.store();
 }
 
 void Kernel::createDescriptorSet() {

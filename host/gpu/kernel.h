@@ -2,15 +2,12 @@
 #pragma once
 
 #include "gpu/buffer.h"
+#include "gpu/pipeline_cache.h"
 #include "gpu/spirv_reflection.h"
 
-#include <map>
 #include <span>
 
 namespace isolux {
-
-/// Specialisation constants by id; booleans are 0 or 1.
-using Specialization = std::map<std::uint32_t, std::uint32_t>;
 
 struct KernelSource {
     std::span<const std::uint32_t> spirv;

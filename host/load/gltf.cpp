@@ -5,6 +5,7 @@
 #include "load/node_walker.h"
 #include "load/texture_builder.h"
 #include "load/verify.h"
+#include "scene/textures.h"
 
 #include <fmt/format.h>
 
@@ -89,6 +90,19 @@ Scene buildScene(const Asset& asset, MaterialBuilder& materials, const fs::path&
     return scene;
 }
 
+/// A normal map that is the same everywhere, and within what 8 bits can tell of straight up, says nothing: 8 bits have
+/// no zero.
+void removeFlatNormalMaps(Scene& scene) {
+    for (Material& material : scene.materials) {
+        TextureMap& map = material.maps[static_cast<std::size_t>(MapSlot::normal)];
+        if (!map.present()) continue;
+        const std::optional<glm::dvec4> value = constantValue(scene, map, MapSlot::normal);
+        constexpr double kHalfStep = 0.5000001 / 255.0;
+        if (value && std::abs(value->x - 0.5) <= kHalfStep && std::abs(value->y - 0.5) <= kHalfStep && value->z > 0.5)
+            map = {};
+    }
+}
+
 } // namespace
 
 Scene loadScene(const fs::path& file) {
@@ -109,6 +123,7 @@ Scene loadScene(const fs::path& file) {
     asset.model = parseModel(verified, context);
     Scene scene = buildScene(asset, materials, file, context);
     buildTextures(scene, textures, images.images);
+    removeFlatNormalMaps(scene);
     scene.warnings = context.warnings();
     scene.contentHash = hash.hexadecimal();
     validate(scene);

@@ -54,10 +54,18 @@ void simplifyMap(const Scene& scene, Material& material, MapSlot slot) {
         return;
     }
     const std::optional<glm::dvec4> constant = constantValue(scene, map, slot);
-    const bool absent = constant && (slot != MapSlot::normal || isFlatNormal(*constant));
+    const bool absent = constant && (slot != MapSlot::normal || rgb(*constant) == Vec3d(0.5, 0.5, 1.0));
     if (!absent) return;
     fold(material, slot, *constant);
     map.texture = kNoTexture;
+}
+
+/// The least alpha that is stored; no filter makes less of it.
+double leastAlpha(const TextureImage& image) {
+    double least = 1.0;
+    for (const Texel8& texel : image.texels8) least = std::min(least, texel.a / 255.0);
+    for (const Texel16& texel : image.texels16) least = std::min(least, texel.a / 65535.0);
+    return least;
 }
 
 /// The least alpha that vertices of a material's meshes have.
@@ -69,7 +77,6 @@ std::vector<double> leastVertexAlpha(const Scene& scene) {
     return least;
 }
 
-/// No filter makes alpha less than the least that is stored.
 bool neverHides(const Scene& scene, const Material& material, double vertexAlpha) {
     const TextureMap& map = material.map(MapSlot::baseColor);
     const double ofMap = map.present() ? leastAlpha(scene.images[scene.textures[map.texture].image]) : 1.0;

@@ -198,7 +198,6 @@ void PathRenderer::setMaxDepth(std::uint32_t maxDepth) {
 }
 
 void PathRenderer::createKernel() {
-    const SceneFeatures& features = statistics_.features;
     KernelSource source;
     source.spirv = kernels::path;
     source.pushConstantSize = sizeof(shared::DispatchParameters);
@@ -208,8 +207,9 @@ void PathRenderer::createKernel() {
                              {shared::kSpecAovs, options_.aovs == Aovs::on ? 1u : 0u},
                              {shared::kSpecPathSignatures, options_.signatures == PathSignatures::on ? 1u : 0u},
                              {shared::kSpecTraversalCounts, options_.counts == TraversalCounts::on ? 1u : 0u}};
-    source.specialization.merge(specializeFeatures(features));
+    source.specialization.merge(specializeFeatures(statistics_.features));
     source.specialization.merge(specializeMethods(settings_, parameters_));
+    statistics_.specialization = source.specialization;
     kernel_ = std::make_unique<Kernel>(device_, source);
     scene_->bindTo(*kernel_);
     kernel_->bind(shared::kBindRender, *parameterBuffer_);

@@ -43,6 +43,7 @@ struct RenderStatistics {
     std::uint64_t dispatchCount = 0;
     std::size_t sceneBytes = 0;
     SceneFeatures features;
+    Specialization specialization; ///< of the kernel
 };
 
 class PathRenderer {

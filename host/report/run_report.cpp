@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace isolux {
@@ -106,8 +107,11 @@ std::string deviceText(const RunReport& report) {
 }
 
 std::string startUpText(const RunTimings& timings) {
-    return fmt::format("{:.3f} s: load {:.3f}, build {:.3f}, upload {:.3f}, compile {:.3f}", timings.startUp(),
-                       timings.load, timings.build, timings.upload, timings.compile);
+    std::string text =
+        fmt::format("{:.3f} s: open {:.3f}, load {:.3f}, build {:.3f}, upload {:.3f}, compile {:.3f}",
+                    timings.startUp(), timings.open, timings.load, timings.build, timings.upload, timings.compile);
+    if (timings.firstPixel) text += fmt::format("; first pixel after {:.2f}", *timings.firstPixel);
+    return text;
 }
 
 std::string renderText(const RunReport& report) {
@@ -131,19 +135,11 @@ std::string qualityText(const ImageQuality& quality) {
 std::string requestText(const RunReport& report) {
     std::string text;
     if (!report.camera.empty()) text += formatLine("camera", report.camera);
-    if (report.environment) {
-        text += formatLine("environment", fmt::format("{}, {}", formatColor(report.environment->radiance),
-                                                      report.environment->extent));
-    }
+    if (report.environment) text += formatLine("environment", toText(*report.environment));
     if (!report.methods.empty()) text += formatLine("methods", formatMethods(report.methods));
     if (report.timeLimit) text += formatLine("time limit", fmt::format("{} s", formatNumber(*report.timeLimit)));
     if (!report.layers.empty()) text += formatLine("layers", fmt::format("{}", fmt::join(report.layers, ", ")));
     return text;
-}
-
-ordered_json environmentJson(const RunReport& report) {
-    if (!report.environment) return {};
-    return {{"radiance", toJson(report.environment->radiance)}, {"extent", report.environment->extent}};
 }
 
 ordered_json adaptiveJson(const RunReport& report) {
@@ -175,8 +171,19 @@ ordered_json testsJson(const RunReport& report) {
 }
 
 ordered_json timingsJson(const RunTimings& timings) {
-    return {{"load", timings.load},       {"build", timings.build},   {"upload", timings.upload},
-            {"compile", timings.compile}, {"render", timings.render}, {"device", timings.device.value_or(kUnknown)}};
+    return {{"open", timings.open},
+            {"load", timings.load},
+            {"build", timings.build},
+            {"upload", timings.upload},
+            {"compile", timings.compile},
+            {"render", timings.render},
+            {"device", timings.device.value_or(kUnknown)}};
+}
+
+ordered_json specializationJson(const RunReport& report) {
+    ordered_json json = ordered_json::object();
+    for (const auto& [id, value] : report.specialization) json[std::to_string(id)] = value;
+    return json;
 }
 
 ordered_json deviceJson(const RunReport& report) {
@@ -198,6 +205,41 @@ std::string formatMethods(const std::vector<MethodChoice>& methods) {
 ordered_json toJson(const std::vector<MethodChoice>& methods) {
     ordered_json json = ordered_json::object();
     for (const MethodChoice& method : methods) json[method.option] = method.value;
+    return json;
+}
+
+std::string toText(const EnvironmentSummary& environment) {
+    const char* origin = environment.origin == SkyOrigin::byDefault ? ", the sky of scenes without a light" : "";
+    const std::string color = formatColor(environment.radiance);
+    if (environment.map.empty()) return fmt::format("{}, {}{}", color, environment.extent, origin);
+    return fmt::format("{}, times {}, turned by {} degrees", environment.map, color,
+                       formatNumber(environment.rotation));
+}
+
+ordered_json toJson(const EnvironmentSummary& environment) {
+    const bool constant = environment.map.empty();
+    return {{"radiance", toJson(environment.radiance)},
+            {"extent", environment.extent},
+            {"map", constant ? ordered_json() : ordered_json(environment.map)},
+            {"rotationDegrees", constant ? ordered_json() : ordered_json(environment.rotation)},
+            {"default", environment.origin == SkyOrigin::byDefault}};
+}
+
+std::string toText(const std::vector<FeatureUse>& features) {
+    std::size_t width = 0;
+    for (const FeatureUse& feature : features) width = std::max(width, feature.name.size());
+    std::string text;
+    for (const FeatureUse& feature : features)
+        text +=
+            formatLine(text.empty() ? "kernels" : "", fmt::format("{:{}}  {:8}  {}", feature.name, width,
+                                                                  feature.used ? "has" : "left out", feature.reason));
+    return text;
+}
+
+ordered_json toJson(const std::vector<FeatureUse>& features) {
+    ordered_json json = ordered_json::object();
+    for (const FeatureUse& feature : features)
+        json[feature.name] = {{"used", feature.used}, {"reason", feature.reason}};
     return json;
 }
 
@@ -273,13 +315,16 @@ ordered_json toJson(const RunReport& report) {
             {"seed", report.seed},
             {"maxDepth", report.maxDepth ? ordered_json(*report.maxDepth) : ordered_json()},
             {"camera", report.camera.empty() ? ordered_json() : ordered_json(report.camera)},
-            {"environment", environmentJson(report)},
+            {"environment", report.environment ? toJson(*report.environment) : ordered_json()},
             {"methods", toJson(report.methods)},
             {"timeLimitSeconds", report.timeLimit ? ordered_json(*report.timeLimit) : ordered_json()},
             {"adaptive", adaptiveJson(report)},
             {"untilError", errorTargetJson(report)},
             {"layers", report.layers},
+            {"features", toJson(report.features)},
+            {"specialization", specializationJson(report)},
             {"seconds", timingsJson(report.timings)},
+            {"firstPixelSeconds", report.timings.firstPixel.value_or(kUnknown)},
             {"rays", report.rays},
             {"raysPerSecond", report.raysPerSecond()},
             {"tests", testsJson(report)},
@@ -287,6 +332,7 @@ ordered_json toJson(const RunReport& report) {
             {"samplesPerSecond", report.samplesPerSecond()},
             {"dispatches", report.dispatchCount},
             {"longestDispatchSeconds", report.longestDispatch},
+            {"sceneBytes", report.sceneBytes},
             {"diagnostics", toJson(report.diagnostics)},
             {"explanations", report.explanations},
             {"validationMessages", report.validationMessages},

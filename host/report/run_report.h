@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,23 +45,44 @@ struct AdaptiveSummary {
 };
 [[nodiscard]] AdaptiveSummary summariseAdaptive(const Film& film, const AdaptiveRule& rule, std::uint64_t maximum);
 
-/// Seconds. `render` is wall time from the first dispatch to the last result; start-up is the four before it.
+/// Seconds. `render` is wall time from the first dispatch to the last result; start-up is the five before it.
 struct RunTimings {
+    double open = 0.0; ///< the device
     double load = 0.0;
     double build = 0.0;
     double upload = 0.0;
     double compile = 0.0;
     double render = 0.0;
-    std::optional<double> device; ///< of `render`, measured on the device itself
+    std::optional<double> device;     ///< of `render`, measured on the device itself
+    std::optional<double> firstPixel; ///< from the start of the process until the first pixels had samples
 
-    [[nodiscard]] double startUp() const { return load + build + upload + compile; }
+    [[nodiscard]] double startUp() const { return open + load + build + upload + compile; }
 };
+
+enum class SkyOrigin { chosen, byDefault };
 
 /// Radiance from infinitely far away, as far as a report tells of it.
 struct EnvironmentSummary {
-    Vec3d radiance{0.0};
-    std::string extent; ///< in words: "sphere", "upper half"
+    Vec3d radiance{0.0};   ///< that of the map is multiplied by it
+    std::string extent;    ///< in words: "sphere", "upper half"
+    std::string map{};     ///< its file or name; empty: the radiance is the same in all directions
+    double rotation = 0.0; ///< of the map, degrees counter-clockwise seen from above
+    SkyOrigin origin = SkyOrigin::chosen;
 };
+[[nodiscard]] std::string toText(const EnvironmentSummary& environment);
+[[nodiscard]] nlohmann::ordered_json toJson(const EnvironmentSummary& environment);
+
+/// A part of the kernels that some scenes or options need.
+struct FeatureUse {
+    std::string name;
+    bool used = false; ///< whether this render's kernels have it
+    std::string reason;
+};
+
+/// A table: what the kernels have, what was left out of them, and why.
+[[nodiscard]] std::string toText(const std::vector<FeatureUse>& features);
+/// {"used", "reason"} by name.
+[[nodiscard]] nlohmann::ordered_json toJson(const std::vector<FeatureUse>& features);
 
 struct RunReport {
     std::string scene;
@@ -89,6 +111,9 @@ struct RunReport {
     std::uint64_t samples = 0; ///< of all pixels
     std::uint64_t dispatchCount = 0;
     double longestDispatch = 0.0; ///< seconds
+    std::uint64_t sceneBytes = 0; ///< of the scene on the device
+    std::vector<FeatureUse> features;
+    std::map<std::uint32_t, std::uint32_t> specialization; ///< constants of the path kernel, by id
     Diagnostics diagnostics;
     std::vector<std::string> validationMessages; ///< of the Vulkan validation layers, if they were asked for
     ImageQuality quality;

@@ -135,7 +135,7 @@ ISOLUX_CONSTANT uint kReflectionRoughnesses = 32u;
 ISOLUX_CONSTANT uint kFresnelTableAngles = 32u;
 ISOLUX_CONSTANT uint kGlassTableAngles = 40u;
 ISOLUX_CONSTANT uint kGlassTableRoughnesses = 24u;
-ISOLUX_CONSTANT uint kGlassTableIndices = 40u;
+ISOLUX_CONSTANT uint kGlassTableIndices = 48u;
 
 // Words (of 16 bytes) a record.
 ISOLUX_CONSTANT uint kNodeWords = 4u;

@@ -110,7 +110,8 @@ TEST_F(RenderOptionsTest, EnvironmentLightsASceneWithout) {
 }
 
 TEST_F(RenderOptionsTest, MalformedEnvironmentsAreRefused) {
-    for (const char* radiance : {"1,2", "a", "-1", "1,2,3,4", "nan", "inf", "1,", ",1", "1,,1", "1e39", "1;2;3"})
+    for (const char* radiance :
+         {"1,2", "a", "-1", "1,2,3,4", "nan", "inf", "1,", ",1", "1,,1", "1e39", "1;2;3", "absent.hdr", "None"})
         expectBadInput("'--environment=" + std::string(radiance) + "'", {"--environment"});
 }
 

@@ -10,10 +10,14 @@ using nlohmann::json;
 
 class SceneCommand : public CubeSceneTest {
 protected:
-    [[nodiscard]] json report() const {
-        const ProgramResult result = runProgram("scene " + scene() + " --json");
+    [[nodiscard]] json report(const std::string& options = "") const {
+        const ProgramResult result = runProgram("scene " + scene() + " --json " + options);
         EXPECT_EQ(result.exitCode, 0) << result.output;
         return json::parse(result.output);
+    }
+    /// Whether kernels have a feature for the scene.
+    [[nodiscard]] static bool has(const json& report, const std::string& feature) {
+        return report.at("features").at(feature).at("used").get<bool>();
     }
     /// Exit code 2 and one line that names the file and the JSON pointer.
     void expectBadInput(const std::string& pointer) const {
@@ -33,9 +37,9 @@ std::vector<std::string> keysOf(const json& object) {
 TEST_F(SceneCommand, JsonHasEveryKey) {
     const json all = report();
     EXPECT_EQ(keysOf(all),
-              (std::vector<std::string>{"bounds", "bvh", "cameras", "deviceBytes", "features", "file", "instances",
-                                        "lights", "materials", "meshTriangles", "meshes", "report", "sceneHash",
-                                        "schema", "spheres", "triangles", "unsupported"}));
+              (std::vector<std::string>{"bounds", "bvh", "cameras", "deviceBytes", "environment", "features", "file",
+                                        "instances", "lights", "materials", "meshTriangles", "meshes", "report",
+                                        "sceneHash", "schema", "spheres", "triangles", "unsupported"}));
     EXPECT_EQ(keysOf(all.at("bvh")), (std::vector<std::string>{"depth", "leaves", "meanLeafSize", "nodes", "sahCost",
                                                                "stackEntries", "wideNodes"}));
     EXPECT_EQ(all.at("schema"), 1);
@@ -57,7 +61,7 @@ TEST_F(SceneCommand, CountsWhatIsThere) {
     EXPECT_EQ(counts.at("meshes"), 1);
     EXPECT_EQ(counts.at("instances"), 2);
     EXPECT_EQ(counts.at("spheres"), 1);
-    EXPECT_TRUE(counts.at("features").at("spheres"));
+    EXPECT_TRUE(has(counts, "spheres"));
     EXPECT_EQ(counts.at("bounds").at(1), json::parse("[5, 1, 1]"));
 }
 
@@ -87,7 +91,7 @@ TEST_F(SceneCommand, DescribesTheCameras) {
 }
 
 TEST_F(SceneCommand, CountsLightsByKind) {
-    EXPECT_EQ(report().at("lights"),
+    EXPECT_EQ(report("--environment none").at("lights"),
               json::parse(R"({"area": 0, "point": 0, "spot": 0, "directional": 0, "environment": 0})"));
     json document = cubeDocument();
     document["materials"][0]["emissiveFactor"] = {1, 1, 1};
@@ -100,21 +104,40 @@ TEST_F(SceneCommand, CountsLightsByKind) {
 }
 
 TEST_F(SceneCommand, FeaturesAreWhatTheSceneNeeds) {
-    EXPECT_EQ(report().at("features"), json::parse(R"({"spheres": false, "smoothNormals": false, "areaLights": false,
-                                                       "punctualLights": false, "environment": false,
-                                                       "lightChoice": false})"));
+    const json dark = report("--environment none");
+    for (const char* feature : {"spheres", "smooth-normals", "area-lights", "punctual-lights", "environment"}) {
+        EXPECT_FALSE(has(dark, feature)) << feature;
+        EXPECT_NE(dark.at("features").at(feature).at("reason"), "") << feature;
+    }
     json document = cubeDocument();
     addPunctualLight(document, "point");
-    writeScene(document);
-    EXPECT_TRUE(report().at("features").at("punctualLights"));
-    EXPECT_FALSE(report().at("features").at("lightChoice")) << "one light is no choice";
     document["materials"][0]["emissiveFactor"] = {1, 1, 1};
     document["scenes"][0]["extras"]["cgl_hemisphere_light"]["radiance"] = {1, 1, 1};
     document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0;
     writeScene(document);
-    EXPECT_EQ(report().at("features"), json::parse(R"({"spheres": false, "smoothNormals": true, "areaLights": true,
-                                                       "punctualLights": true, "environment": true,
-                                                       "lightChoice": true})"));
+    const json lit = report();
+    EXPECT_FALSE(has(lit, "spheres"));
+    for (const char* feature : {"smooth-normals", "area-lights", "punctual-lights", "environment"})
+        EXPECT_TRUE(has(lit, feature)) << feature;
+}
+
+TEST_F(SceneCommand, NamesTheEnvironment) {
+    const json sky = report();
+    EXPECT_EQ(sky.at("environment"), json::parse(R"({"radiance": [1, 1, 1], "extent": "sphere", "map": null,
+                                                     "rotationDegrees": null, "default": true})"));
+    EXPECT_EQ(sky.at("lights").at("environment"), 1);
+    EXPECT_TRUE(report("--environment none").at("environment").is_null());
+    EXPECT_EQ(report("--environment 2 --environment-strength 0.25").at("environment").at("radiance"),
+              json::parse("[0.5, 0.5, 0.5]"));
+    EXPECT_FALSE(report("--environment 2").at("environment").at("default"));
+    EXPECT_EQ(report("--environment 2").at("sceneHash"), sky.at("sceneHash")) << "only files enter the hash";
+    json document = cubeDocument();
+    document["scenes"][0]["extras"]["cgl_hemisphere_light"]["radiance"] = {1, 2, 3};
+    writeScene(document);
+    const json own = report().at("environment");
+    EXPECT_EQ(own.at("radiance"), json::parse("[1, 2, 3]"));
+    EXPECT_EQ(own.at("extent"), "upper half");
+    EXPECT_FALSE(own.at("default"));
 }
 
 TEST_F(SceneCommand, TextSaysTheSame) {
@@ -126,10 +149,12 @@ TEST_F(SceneCommand, TextSaysTheSame) {
     const json same = report();
     for (const std::string& part :
          {same.at("sceneHash").get<std::string>(), std::string("12, in 1 instances of 1 meshes"),
-          std::string("none: images will be black; --environment 1,1,1 adds one"),
+          std::string("environment       (1, 1, 1), sphere, the sky of scenes without a light"),
           std::string("0 'front view', perspective"), std::string("1 'front plan', orthographic, 4 high"),
-          std::string("left out          spheres (no exact sphere)")})
+          std::string("kernels           spheres                  left out  ")})
         EXPECT_TRUE(contains(text.output, part)) << part << " in\n" << text.output;
+    const ProgramResult dark = runProgram("scene " + scene() + " --environment none");
+    EXPECT_TRUE(contains(dark.output, "none: images will be black; --environment 1,1,1 adds one")) << dark.output;
     ASSERT_EQ(same.at("unsupported").size(), 1u);
     EXPECT_TRUE(contains(text.output, "unsupported       " + same.at("unsupported")[0].get<std::string>()));
 }
