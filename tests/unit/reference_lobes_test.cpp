@@ -86,8 +86,9 @@ BinMass massOfBin(const Bsdf<double>& bsdf, const MicrofacetCoordinates& coordin
     const int column = bin % MicrofacetCoordinates::kAzimuths;
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < kGrid * kGrid; ++i) {
-        const double s = (row + (i % kGrid + random.unit()) / kGrid) / MicrofacetCoordinates::kSlopes;
-        const double azimuth = (column + (i / kGrid + random.unit()) / kGrid) / MicrofacetCoordinates::kAzimuths;
+        const int cellRow = i / kGrid, cellColumn = i % kGrid;
+        const double s = (row + (cellRow + random.unit()) / kGrid) / MicrofacetCoordinates::kSlopes;
+        const double azimuth = (column + (cellColumn + random.unit()) / kGrid) / MicrofacetCoordinates::kAzimuths;
         const Vec3d wi = coordinates.direction(s, azimuth, below);
         if (wi == Vec3d(0.0)) continue;
         const double value = bsdf.evaluate(wi).pdf * coordinates.jacobian(s, azimuth, below);
