@@ -44,8 +44,8 @@ TYPED_TEST(ReferenceTexture, IndicesAreWrapped) {
     using Real = TypeParam;
     const auto wrapped = [](double index, TextureWrap wrap) { return wrapIndex<Real>(Real(index), 3, wrap); };
     const std::vector<std::uint32_t> repeated = {2, 0, 1, 2, 0, 1, 2, 0}, mirrored = {0, 0, 1, 2, 2, 1, 0, 0};
-    for (int i = -1; i < 7; ++i) {
-        const auto place = static_cast<std::size_t>(i + 1);
+    for (std::size_t place = 0; place < repeated.size(); ++place) {
+        const int i = static_cast<int>(place) - 1;
         EXPECT_EQ(wrapped(i, TextureWrap::repeat), repeated[place]) << i;
         EXPECT_EQ(wrapped(i, TextureWrap::mirroredRepeat), mirrored[place]) << i;
         EXPECT_EQ(wrapped(i, TextureWrap::clampToEdge), static_cast<std::uint32_t>(std::clamp(i, 0, 2))) << i;
