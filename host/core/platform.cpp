@@ -83,7 +83,7 @@ std::filesystem::path cacheFolderOfAll() {
     return folderIn("LOCALAPPDATA");
 #else
 #if !defined(__APPLE__)
-    if (const std::filesystem::path chosen = folderIn("XDG_CACHE_HOME"); !chosen.empty()) return chosen;
+    if (std::filesystem::path chosen = folderIn("XDG_CACHE_HOME"); !chosen.empty()) return chosen;
     constexpr const char* kInHome = ".cache";
 #else
     constexpr const char* kInHome = "Library/Caches";

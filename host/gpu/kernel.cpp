@@ -1,5 +1,7 @@
 #include "gpu/kernel.h"
 
+#include "core/log.h"
+
 #include <algorithm>
 
 namespace isolux {
@@ -28,6 +30,7 @@ public:
         std::vector<std::byte> data(size);
         if (vkGetPipelineCacheData(device_->handle(), cache_.get(), &size, data.data()) != VK_SUCCESS) return;
         data.resize(size);
+        spdlog::debug("pipeline cache: the driver has {} bytes of it", size);
         if (size > kEmptyCacheBytes && data != loaded_) folder_.store(key_, data);
     }
 

@@ -41,8 +41,8 @@ void append(std::vector<std::byte>& bytes, std::uint64_t value, int count) {
 
 /// All of the header but the checksum.
 std::vector<std::byte> headerFor(const PipelineKey& key, std::size_t size) {
-    std::vector<std::byte> header;
-    for (const char letter : kMagic) header.push_back(static_cast<std::byte>(letter));
+    const auto magic = std::as_bytes(std::span(kMagic));
+    std::vector<std::byte> header(magic.begin(), magic.end());
     append(header, kVersion, 4);
     append(header, key.driver.vendor, 4);
     append(header, key.driver.device, 4);

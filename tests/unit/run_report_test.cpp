@@ -145,6 +145,48 @@ TEST(RunReport, SaysHowManyTestsARayTakes) {
     EXPECT_EQ(toJson(report)["tests"]["primitivesPerRay"], 2.5);
 }
 
+TEST(RunReport, NamesMapsAndTheSkyByDefault) {
+    EnvironmentSummary map{Vec3d(2.0), "sphere"};
+    map.map = "sky.hdr";
+    map.rotation = 90.0;
+    EXPECT_EQ(toText(map), "sky.hdr, times (2, 2, 2), turned by 90 degrees");
+    EXPECT_EQ(toJson(map)["map"], "sky.hdr");
+    EXPECT_EQ(toJson(map)["rotationDegrees"], 90.0);
+    EnvironmentSummary sky{Vec3d(1.0), "sphere"};
+    EXPECT_EQ(toText(sky), "(1, 1, 1), sphere");
+    EXPECT_FALSE(toJson(sky)["default"]);
+    sky.origin = SkyOrigin::byDefault;
+    EXPECT_EQ(toText(sky), "(1, 1, 1), sphere, the sky of scenes without a light");
+    EXPECT_TRUE(toJson(sky)["default"]);
+    EXPECT_TRUE(toJson(sky)["map"].is_null());
+}
+
+TEST(RunReport, ExplainsWhatTheKernelsHave) {
+    RunReport report;
+    report.features = {{"spheres", false, "no exact sphere"}, {"smooth-normals", true, "1 of 2 meshes has normals"}};
+    report.specialization = {{3, 0}, {11, 1}};
+    EXPECT_EQ(toText(report.features), "kernels           spheres         left out  no exact sphere\n"
+                                       "                  smooth-normals  has       1 of 2 meshes has normals\n");
+    const nlohmann::ordered_json json = toJson(report);
+    EXPECT_EQ(json["features"]["spheres"]["used"], false);
+    EXPECT_EQ(json["features"]["smooth-normals"]["reason"], "1 of 2 meshes has normals");
+    EXPECT_EQ(json["specialization"], (nlohmann::ordered_json{{"3", 0}, {"11", 1}}));
+    EXPECT_EQ(toJson(RunReport{})["features"], nlohmann::ordered_json::object());
+}
+
+TEST(RunReport, SaysWhenTheFirstPixelWasThere) {
+    RunReport report;
+    report.timings.open = 0.25;
+    report.timings.compile = 0.5;
+    expectMentions(toText(report), "start-up          0.750 s: open 0.250");
+    EXPECT_EQ(toText(report).find("first pixel"), std::string::npos);
+    EXPECT_TRUE(nlohmann::ordered_json::parse(jsonText(toJson(report)))["firstPixelSeconds"].is_null());
+    report.timings.firstPixel = 1.25;
+    expectMentions(toText(report), "compile 0.500; first pixel after 1.25\n");
+    EXPECT_EQ(toJson(report)["firstPixelSeconds"], 1.25);
+    EXPECT_EQ(toJson(report)["seconds"]["open"], 0.25);
+}
+
 TEST(RunReport, SaysWhatWasRendered) {
     Film film(4, 2);
     for (PixelStatistics& pixel : film.pixels) pixel.sampleCount = 8;
