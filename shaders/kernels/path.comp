@@ -140,7 +140,7 @@ void goOnOrEnd() {
     uint lobe = path.ending >> kLobeShift;
     if (!kLambertianOnly && lobe != 0u) recordEvent(lobe);
     if (ending == kGoesOn) {
-        if (kGlass && lobe == kLobeGlassTransmits) {
+        if (kGlass && (path.ending & kCrossesBit) != 0u) {
             path.ray.origin = path.beyond;
             path.medium = path.mediumBeyond;
         }
@@ -201,6 +201,7 @@ void leaveSurface(Surface surface, Bsdf bsdf) {
     path.ray.origin = offsetOrigin(surface.position, surface.error, surface.facing);
     if (kGlass) {
         path.beyond = offsetOrigin(surface.position, surface.error, -surface.facing);
+        path.primitive = path.traversal.primitive;
         bool solid = kSolids && (bsdf.kind & kSolid) != 0u;
         path.mediumBeyond = !solid ? path.medium : (surface.front ? surface.material : kNone);
     }

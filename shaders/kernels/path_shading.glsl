@@ -101,16 +101,25 @@ vec3 emissionShare(LightSample light) {
     return emissionMapAt(material, at) * coverage;
 }
 
-LightSample chooseAndSample(uint index) {
+// Where a light is sampled from: the near side, but a sphere that emits sees itself through itself alone.
+vec3 samplingOrigin(ShadingPoint point, LightRecord light) {
+    bool ownSphere = kGlass && kSpheres && transmitsBroadly(point.bsdf) && (point.bsdf.kind & kInside) == 0u &&
+                     (floatBitsToUint(light.emissionKind.w) & kLightKindMask) == kLightSphere &&
+                     floatBitsToUint(light.p0Primitive.w) == path.primitive;
+    return ownSphere ? path.beyond : path.ray.origin;
+}
+
+LightSample chooseAndSample(ShadingPoint point, uint index, out vec3 from) {
     uint block = blockOfLightSample(index);
     uvec4 random = randomBlock(block);
     LightRecord record = readLight(render.tableOffsets.y, lightOfSample(index, random));
+    from = samplingOrigin(point, record);
     LightSample light;
     if (kEnvironmentMap && render.environmentMap.z > 0u && (floatBitsToUint(record.emissionKind.w) & kLightKindMask) == kLightEnvironment) {
         light = sampleEnvironmentMap(environmentMap(), record.emissionKind.xyz, record.p1Samples.w,
                                      randomBlock(block ^ kCellBlocks));
     } else {
-        light = sampleLight(record, path.ray.origin, vec2(unitReal(random.z), unitReal(random.w)));
+        light = sampleLight(record, from, vec2(unitReal(random.z), unitReal(random.w)));
     }
     if ((kEmissionMaps || kCutouts) && light.pdf > 0.0 && light.mapped) light.emission *= emissionShare(light);
     return light;
@@ -118,7 +127,8 @@ LightSample chooseAndSample(uint index) {
 
 // Samples a light and leaves a pending shadow ray in the path if it could contribute. Its limit; 0 without one.
 float sampleDirect(ShadingPoint point, uint index) {
-    LightSample light = chooseAndSample(index);
+    vec3 from;
+    LightSample light = chooseAndSample(point, index, from);
     bool lights = light.pdf > 0.0 && maxComponent(light.emission) > 0.0;
     bool lambertian = isLambertian(point.bsdf);
     lights = lights && (!lambertian || maxComponent(point.reflected) > 0.0);
@@ -149,12 +159,12 @@ float sampleDirect(ShadingPoint point, uint index) {
         path.shadowPrimitive = light.primitive;
         limit = light.limit;
         bool finite = light.limit < kFarthest;
-        if (kAbsorption && finite)
-            path.shadowRadiance *= transmittance(beyond ? path.mediumBeyond : path.medium, length(light.way));
         if (kGlass) {
             path.shadowBeyond = beyond;
-            if (beyond && finite) path.shadowDirection += path.ray.origin - path.beyond;
+            if (beyond && finite) path.shadowDirection += from - path.beyond;
         }
+        if (kAbsorption && finite)
+            path.shadowRadiance *= transmittance(beyond ? path.mediumBeyond : path.medium, length(path.shadowDirection));
     } else {
         recordEvent(kSignatureNoRay);
     }
@@ -197,17 +207,17 @@ vec3 uniformDirection(Bsdf bsdf, vec2 u, out float pdf) {
     return vec3(around, z);
 }
 
-// The next direction off any other surface. Whether it leaves on the side that its lobe scatters to.
-bool scatterByLobe(Surface surface, Bsdf bsdf, float choice, vec2 u, out uint lobe) {
+// The next direction off any other surface, its lobe and side in `outcome`. Whether it leaves on the side it should.
+bool scatterByLobe(Surface surface, Bsdf bsdf, float choice, vec2 u, out uint outcome) {
     ShadingFrame frame = frameOf(surface.shading);
     vec3 wo = outgoingInFrame(frame, -path.ray.direction);
     BsdfSample chosen = sampleBsdf(bsdf, wo, choice, u);
     float uniformPdf = 0.0;
     if (kLightSampling == kLightSamplingHemisphere && !chosen.delta) {
         chosen.wi = uniformDirection(bsdf, u, uniformPdf);
-        chosen.lobe = chosen.wi.z < 0.0 ? kLobeGlassTransmits : kLobeDiffuse;
+        if (chosen.lobe >= kLobeGlassReflects)
+            chosen.lobe = chosen.wi.z < 0.0 ? kLobeGlassTransmits : kLobeGlassReflects;
     }
-    lobe = chosen.lobe;
     path.pdf = 0.0;
     if (!chosen.delta) {
         vec3 value = evalBsdf(bsdf, wo, chosen.wi, path.pdf);
@@ -215,9 +225,10 @@ bool scatterByLobe(Surface surface, Bsdf bsdf, float choice, vec2 u, out uint lo
         chosen.weight = path.pdf > 0.0 ? value / path.pdf : vec3(0.0);
     }
     path.throughput *= chosen.weight;
-    bool crosses = lobe == kLobeGlassTransmits;
+    bool crosses = chosen.wi.z < 0.0;
     if (kSolids && crosses && (bsdf.kind & kSolid) != 0u) path.radianceScale *= bsdf.eta * bsdf.eta;
     path.ray.direction = fromFrame(frame, chosen.wi);
+    outcome = (chosen.lobe << kLobeShift) | (crosses ? kCrossesBit : 0u);
     float side = dot(path.ray.direction, surface.facing);
     return chosen.wi != vec3(0.0) && (crosses ? side < 0.0 : side > 0.0);
 }
@@ -226,12 +237,12 @@ bool scatterByLobe(Surface surface, Bsdf bsdf, float choice, vec2 u, out uint lo
 uint scatter(Surface surface, Bsdf bsdf) {
     uvec4 random = randomBlock(2u + 2u * path.depth);
     vec2 u = vec2(unitReal(random.x), unitReal(random.y));
-    uint lobe = 0u;
+    uint outcome = 0u;
     bool leaves;
     if (isLambertian(bsdf)) {
         leaves = scatterDiffusely(surface, bsdf.diffuse, u);
     } else {
-        leaves = scatterByLobe(surface, bsdf, unitReal(random.w), u, lobe);
+        leaves = scatterByLobe(surface, bsdf, unitReal(random.w), u, outcome);
     }
     ++path.depth;
     uint ending = kGoesOn;
@@ -240,7 +251,7 @@ uint scatter(Surface surface, Bsdf bsdf) {
     } else if (kRoulette != kRouletteOff && path.depth >= render.depthLights.y && !survivesRoulette(random.z)) {
         ending = kEndsByRoulette;
     }
-    return ending | (lobe << kLobeShift);
+    return ending | outcome;
 }
 
 #endif

@@ -51,6 +51,7 @@ struct Path {
     uint mediumBeyond;   // of what lies behind the surface of a shading point
     vec3 beyond;         // where rays start that go there
     bool shadowBeyond;   // the shadow ray is one of them
+    uint primitive;      // that the shading point is on
     Traversal traversal;
 };
 
@@ -108,6 +109,7 @@ void loadPath(uint lane) {
         path.mediumBeyond = record.pointMedia.z;
         path.beyond = record.pointBeyond.xyz;
         path.shadowBeyond = record.ignored.z != 0u;
+        path.primitive = record.ignored.w;
     }
     if (kLightLoop) loadPoint(record);
     uint entries = kEveryPrimitive ? 0u : path.traversal.stackCount;
@@ -127,7 +129,8 @@ void storePath(uint lane) {
     paths[lane].shadowRadiance = vec4(path.shadowRadiance, 0.0);
     paths[lane].progress = uvec4(path.phase, path.sampleIndex, path.traversal.primitive, path.traversal.stackCount);
     paths[lane].bounce = uvec4(path.depth, path.ending, path.signature, path.lightsLeft);
-    paths[lane].ignored = uvec4(path.leaves, path.shadowPrimitive, kGlass && path.shadowBeyond ? 1u : 0u, 0u);
+    paths[lane].ignored = uvec4(path.leaves, path.shadowPrimitive, kGlass && path.shadowBeyond ? 1u : 0u,
+                                kGlass ? path.primitive : 0u);
     if (kGlass) {
         paths[lane].pointMedia.z = path.mediumBeyond;
         paths[lane].pointBeyond = vec4(path.beyond, 0.0);

@@ -54,7 +54,8 @@ void layerSpecular(inout Bsdf bsdf, vec3 base, float cosine, uint albedoTables) 
         schlick = fresnelAlbedo(albedoTables, cosine, bsdf.alpha);
         bsdf.boost = 1.0 / albedo - 1.0;
     }
-    float reflected = maxComponent((1.0 + bsdf.f0 * bsdf.boost) * (bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick) * albedo);
+    vec3 layer = (1.0 + bsdf.f0 * bsdf.boost) * (bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick) * albedo;
+    float reflected = min(maxComponent(layer), 1.0);
     vec3 left = base * (1.0 - reflected);
     float diffuse = maxComponent(left);
     bsdf.specular = reflected > 0.0 ? reflected / (reflected + diffuse) : 0.0;
@@ -100,7 +101,7 @@ Bsdf bsdfAt(MaterialRecord material, MapPoint at, vec3 base, float cosine, bool 
             }
         }
         if (kSpecular && bsdf.glass < 1.0) {
-            float metal = metallic / (1.0 - bsdf.glass);
+            float metal = min(metallic / (1.0 - bsdf.glass), 1.0); // rounding may leave more
             float factor = material.specular.w;
             vec3 color = material.specular.rgb;
             if (kSpecularMaps) {

@@ -25,7 +25,8 @@ struct PathRecord {
     uvec4 pointMedia;
     uvec4 progress; // phase, sample within the batch, nearest primitive found so far, entries on the stack
     uvec4 bounce;   // bounces so far, ending and lobe, path signature, light samples still to be taken
-    uvec4 ignored;  // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); z, w unused
+    uvec4 ignored;  // flat primitive the ray leaves, light the shadow ray ends at (kNone: neither); whether the
+                    // shadow ray starts on the far side, primitive of the shading point
 };
 ISOLUX_CHECK_SIZE(PathRecord, 288);
 
@@ -106,7 +107,8 @@ ISOLUX_CONSTANT uint kGoesOn = 0u;
 ISOLUX_CONSTANT uint kEnds = 1u;
 ISOLUX_CONSTANT uint kEndsByRoulette = 2u;
 ISOLUX_CONSTANT uint kEndingMask = 3u;
-ISOLUX_CONSTANT uint kLobeShift = 2u; // above it: kLobe..., or 0 on a Lambertian surface
+ISOLUX_CONSTANT uint kCrossesBit = 4u; // the next ray leaves on the far side of the surface
+ISOLUX_CONSTANT uint kLobeShift = 3u;  // above it: kLobe..., or 0 on a Lambertian surface
 
 ISOLUX_CONSTANT uint kSignatureStart = 2166136261u;
 ISOLUX_CONSTANT uint kSignatureFactor = 16777619u;

@@ -37,6 +37,8 @@ TEST(StructLayout, PathKernel) {
                  {MEMBER(PathRecord, originPdf), MEMBER(PathRecord, directionDistance), MEMBER(PathRecord, throughput),
                   MEMBER(PathRecord, radiance), MEMBER(PathRecord, shadowDirection), MEMBER(PathRecord, shadowRadiance),
                   MEMBER(PathRecord, pointFacing), MEMBER(PathRecord, pointShading), MEMBER(PathRecord, pointReflected),
+                  MEMBER(PathRecord, pointOutgoing), MEMBER(PathRecord, pointThroughput), MEMBER(PathRecord, pointF0),
+                  MEMBER(PathRecord, pointTint), MEMBER(PathRecord, pointBeyond), MEMBER(PathRecord, pointMedia),
                   MEMBER(PathRecord, progress), MEMBER(PathRecord, bounce), MEMBER(PathRecord, ignored)},
                  sizeof(shared::PathRecord));
     expectLayout(module, "FilmRecord",
@@ -52,10 +54,11 @@ TEST(StructLayout, PathKernel) {
                   MEMBER(RenderParameters, cameraUp), MEMBER(RenderParameters, cameraForward),
                   MEMBER(RenderParameters, lensRight), MEMBER(RenderParameters, lensUp),
                   MEMBER(RenderParameters, environment), MEMBER(RenderParameters, environmentLimits),
-                  MEMBER(RenderParameters, imageSeed), MEMBER(RenderParameters, methods),
-                  MEMBER(RenderParameters, depthLights), MEMBER(RenderParameters, lightSamples),
-                  MEMBER(RenderParameters, tableOffsets), MEMBER(RenderParameters, sceneCounts),
-                  MEMBER(RenderParameters, sampling)},
+                  MEMBER(RenderParameters, environmentMap), MEMBER(RenderParameters, imageSeed),
+                  MEMBER(RenderParameters, methods), MEMBER(RenderParameters, depthLights),
+                  MEMBER(RenderParameters, lightSamples), MEMBER(RenderParameters, tableOffsets),
+                  MEMBER(RenderParameters, textureOffsets), MEMBER(RenderParameters, attributeOffsets),
+                  MEMBER(RenderParameters, sceneCounts), MEMBER(RenderParameters, sampling)},
                  sizeof(shared::RenderParameters));
     expectLayout(module, "DispatchParameters", {MEMBER(DispatchParameters, batch), MEMBER(DispatchParameters, lanes)},
                  sizeof(shared::DispatchParameters));
