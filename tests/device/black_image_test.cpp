@@ -15,8 +15,8 @@ using nlohmann::json;
 class BlackImageTest : public CubeSceneTest {
 protected:
     [[nodiscard]] ProgramResult render() const {
-        return runProgram("render " + scene() + " --size 12x8 --spp 4 -o '" + file("a.exr") + "' --json '" +
-                          file("a.json") + "'");
+        return runProgram("render " + scene() + " --size 12x8 --spp 4 --environment none -o '" + file("a.exr") +
+                          "' --json '" + file("a.json") + "'");
     }
     [[nodiscard]] json explanations() const {
         std::ifstream stream(file("a.json"));
