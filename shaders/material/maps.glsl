@@ -45,7 +45,8 @@ vec4 baseColorAt(MaterialRecord material, MapPoint at) {
     if (kBaseColorMaps) base *= mapValue(material.maps.x, at, true);
     if (kVertexColors && at.planar) {
         ColorRecord colors = readColors(at.attributes.z, at.primitive);
-        base *= at.barycentric.x * colors.c0 + at.barycentric.y * colors.c1 + at.barycentric.z * colors.c2;
+        // As differences: exact where a triangle has one colour.
+        base *= colors.c2 + at.barycentric.x * (colors.c0 - colors.c2) + at.barycentric.y * (colors.c1 - colors.c2);
     }
     return base;
 }

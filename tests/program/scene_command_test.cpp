@@ -142,7 +142,8 @@ TEST_F(SceneCommand, NamesTheEnvironment) {
 
 TEST_F(SceneCommand, TextSaysTheSame) {
     json document = cubeDocument();
-    document["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 1;
+    document["extensionsUsed"].push_back("KHR_materials_sheen");
+    document["materials"][0]["extensions"]["KHR_materials_sheen"] = {{"sheenRoughnessFactor", 0.5}};
     writeScene(document);
     const ProgramResult text = runProgram("scene " + scene());
     EXPECT_EQ(text.exitCode, 0) << text.output;
