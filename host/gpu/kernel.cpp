@@ -1,5 +1,7 @@
 #include "gpu/kernel.h"
 
+#include "gpu/specialize.h"
+
 #include "core/log.h"
 
 #include <algorithm>
@@ -84,27 +86,19 @@ void Kernel::createLayouts(std::uint32_t pushConstantSize) {
 }
 
 void Kernel::createPipeline(const KernelSource& source) {
+    const std::vector<std::uint32_t> spirv = specialize(source.spirv, source.specialization);
     auto moduleInfo = vulkanStruct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    moduleInfo.codeSize = source.spirv.size_bytes();
-    moduleInfo.pCode = source.spirv.data();
+    moduleInfo.codeSize = spirv.size() * sizeof(spirv[0]);
+    moduleInfo.pCode = spirv.data();
     VkShaderModule module = VK_NULL_HANDLE;
     check(vkCreateShaderModule(device_->handle(), &moduleInfo, nullptr, &module), "vkCreateShaderModule");
     const DeviceHandle<VkShaderModule> moduleHandle(device_->handle(), module, vkDestroyShaderModule);
 
-    std::vector<VkSpecializationMapEntry> entries;
-    std::vector<std::uint32_t> values;
-    for (const auto& [id, value] : source.specialization) {
-        entries.push_back({id, static_cast<std::uint32_t>(values.size() * sizeof(value)), sizeof(value)});
-        values.push_back(value);
-    }
-    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              values.size() * sizeof(std::uint32_t), values.data()};
     auto info = vulkanStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
     info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
     info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     info.stage.module = module;
     info.stage.pName = "main";
-    info.stage.pSpecializationInfo = &specialization;
     info.layout = layout_.get();
     const PipelineCache cache(*device_, source);
     VkPipeline pipeline = VK_NULL_HANDLE;

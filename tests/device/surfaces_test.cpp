@@ -46,7 +46,7 @@ TEST_P(MethodsOnEverySurface, AgreeWithTheReference) {
 }
 
 std::vector<Method> methodsThatScatter() {
-    const std::set<std::string> names{"Hemisphere", "Bsdf",    "LightSampling", "AllLightsThrice",
+    const std::set<std::string> names{"Hemisphere", "Bsdf",    "LightSampling", "FourLightSamples",
                                       "Sobol",      "Ambient", "Normals"};
     std::vector<Method> methods = allMethods();
     std::erase_if(methods, [&](const Method& method) { return !names.contains(method.name); });
