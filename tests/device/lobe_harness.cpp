@@ -87,6 +87,16 @@ std::vector<DeviceLobe> deviceLobes(double alpha) {
             {"part glass from inside", mixture(alpha, 1.0), Side::back}};
 }
 
+std::vector<DeviceLobe> oneLobeEach(double alpha) {
+    const Vec3d tint(0.9, 0.8, 0.7);
+    std::vector<DeviceLobe> lobes;
+    for (const Material& material : {metal(alpha, {0.9, 0.6, 0.2}), thinGlass(alpha, tint),
+                                     solidGlass(alpha, 1.5, tint), solidGlass(alpha, 2.4, tint)})
+        for (const Side side : {Side::front, Side::back})
+            lobes.push_back({side == Side::front ? "from the front" : "from the back", material, side});
+    return lobes;
+}
+
 std::vector<DeviceLobe> whiteLobes(double alpha) {
     const Vec3d white(1.0);
     std::vector<DeviceLobe> lobes{{"metal", metal(alpha, white)},

@@ -34,6 +34,8 @@ struct DeviceLobe {
 
 /// Metal, plastic, both in part, glass thin and solid, and all of them: every combination of lobes, coloured.
 [[nodiscard]] std::vector<DeviceLobe> deviceLobes(double alpha);
+/// Metal and glass, which have one kind of lobe alone: each from the front, then from the back.
+[[nodiscard]] std::vector<DeviceLobe> oneLobeEach(double alpha);
 /// Surfaces that absorb nothing.
 [[nodiscard]] std::vector<DeviceLobe> whiteLobes(double alpha);
 
@@ -51,6 +53,7 @@ public:
 
     [[nodiscard]] LobeAnswers answer(const LobeQueries& queries);
 
+    [[nodiscard]] std::size_t lobeCount() const { return lobes_.size(); }
     [[nodiscard]] const DeviceLobe& lobe(std::size_t index) const { return lobes_[index]; }
     /// The lobe in the reference.
     [[nodiscard]] const MaterialPoint<double>& point(std::size_t index) const { return points_[index]; }
