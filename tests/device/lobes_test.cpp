@@ -6,7 +6,6 @@
 #include "report/statistics.h"
 #include "unit/reference_lobes.h"
 
-#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -33,10 +32,10 @@ struct View {
     double cosine;
 };
 
-/// All pairs; on drivers that repeat what another has done a tenth of them.
+/// All pairs; on drivers that repeat what another has done about a tenth, by an odd step that meets every cosine.
 std::vector<View> viewsOf(std::size_t lobes, const std::vector<double>& cosines) {
     std::vector<View> views;
-    const auto step = static_cast<std::size_t>(std::lround(1.0 / workShare()));
+    const auto step = static_cast<std::size_t>(std::lround(1.0 / workShare())) | 1u;
     for (std::size_t i = 0; i < lobes * cosines.size(); i += step)
         views.push_back({i / cosines.size(), cosines[i % cosines.size()]});
     return views;
@@ -165,7 +164,8 @@ struct SingleScattering {
     Vec3d rounding;
 };
 
-/// Radiance over the square of the index is what travels both ways alike (Veach 1997, 5.2): each way bears one of the two.
+/// Radiance over the square of the index is what travels both ways alike (Veach 1997, 5.2): each way bears one of the
+/// two.
 SingleScattering singleScattering(const LobeKernel& kernel, std::size_t lobe, const shared::LobeQueryRecord& query,
                                   const shared::LobeAnswerRecord& answer) {
     const DeviceLobe& surface = kernel.lobe(lobe);
@@ -211,9 +211,10 @@ public:
     Interval of(const View& view, double confidence) {
         LobeQueries queries;
         const Vec3f wo = outgoingOfCosine(view.cosine);
+        const std::uint32_t points = pointsOf(kernel_.lobe(view.lobe));
         for (std::size_t shift = 0; shift < kShifts; ++shift) {
             const glm::uvec4 offset = random_.words();
-            for (std::uint32_t i = 0; i < kPoints; ++i) {
+            for (std::uint32_t i = 0; i < points; ++i) {
                 const PhiloxBlock words = latticeWords(i);
                 queries.push_back(
                     kernel_.sampling(view.lobe, wo, offset + glm::uvec4(words[0], words[1], 0u, words[3])));
@@ -222,13 +223,15 @@ public:
         const LobeAnswers answers = kernel_.answer(queries);
         std::vector<double> means(kShifts, 0.0);
         for (std::size_t i = 0; i < answers.size(); ++i)
-            means[i / kPoints] += maxComponent(weightOf(kernel_.lobe(view.lobe), answers[i])) / kPoints;
+            means[i / points] += maxComponent(weightOf(kernel_.lobe(view.lobe), answers[i])) / points;
         return meanInterval(means, confidence);
     }
 
 private:
     static constexpr std::size_t kShifts = 24;
-    static constexpr std::uint32_t kPoints = 512;
+
+    /// Broad lobes lose samples below the surface and at other microfacets: their weights differ.
+    static std::uint32_t pointsOf(const DeviceLobe& lobe) { return lobe.alpha() > 0.2 ? 1536 : 512; }
 
     /// With the scaling of radiance undone.
     [[nodiscard]] static Vec3d weightOf(const DeviceLobe& lobe, const shared::LobeAnswerRecord& answer) {
@@ -244,6 +247,9 @@ private:
 
 /// What the tables of albedos promise (host/scene/README.md).
 constexpr double kTableError = 0.005;
+/// Half an interval at most: what a test could not see. The median is 0.0014; 0.02 inside glass of index 1.1 at grazing
+/// angles, where few samples leave and those weigh much.
+constexpr double kResolution = 0.025;
 
 class LobeEnergy : public Lobes {
 protected:
@@ -262,6 +268,7 @@ TEST_F(LobeEnergy, WhiteSurfacesReturnEverything) {
         const Interval albedo = albedos.of(view, confidence(views.size()));
         EXPECT_LT(albedo.low, 1.0 + kTableError) << nameOf(kernel.lobe(view.lobe), view.cosine);
         EXPECT_GT(albedo.high, 1.0 - kTableError) << nameOf(kernel.lobe(view.lobe), view.cosine);
+        EXPECT_LT(albedo.high - albedo.estimate, kResolution) << nameOf(kernel.lobe(view.lobe), view.cosine);
     }
 }
 
