@@ -2,6 +2,7 @@
 #include "gpu/spirv_reflection.h"
 
 #include "kernels/spirv.h"
+#include "shared/lobe_records.h"
 #include "shared/path_records.h"
 #include "shared/ray_records.h"
 
@@ -76,6 +77,20 @@ TEST(StructLayout, IntersectKernel) {
                  sizeof(shared::IntersectParameters));
 }
 
+TEST(StructLayout, LobeKernel) {
+    const SpirvModule module = reflectSpirv(kernels::lobes);
+    expectLayout(
+        module, "LobeQueryRecord",
+        {MEMBER(LobeQueryRecord, outgoing), MEMBER(LobeQueryRecord, incoming), MEMBER(LobeQueryRecord, random)},
+        sizeof(shared::LobeQueryRecord));
+    expectLayout(module, "LobeAnswerRecord",
+                 {MEMBER(LobeAnswerRecord, directionPdf), MEMBER(LobeAnswerRecord, value),
+                  MEMBER(LobeAnswerRecord, probabilities), MEMBER(LobeAnswerRecord, compensation),
+                  MEMBER(LobeAnswerRecord, outcome)},
+                 sizeof(shared::LobeAnswerRecord));
+    expectLayout(module, "LobeParameters", {MEMBER(LobeParameters, tables)}, sizeof(shared::LobeParameters));
+}
+
 #undef MEMBER
 
 /// Some drivers end loops after 65,535 iterations over all loops of an invocation, and Mesa makes a loop of every early
@@ -86,6 +101,8 @@ TEST(Loops, AreThoseThatTheStepBudgetCounts) {
     EXPECT_EQ(reflectSpirv(kernels::path).switchCount, 0u);
     EXPECT_EQ(reflectSpirv(kernels::intersect).loopCount, 3u);
     EXPECT_EQ(reflectSpirv(kernels::intersect).switchCount, 0u);
+    EXPECT_EQ(reflectSpirv(kernels::lobes).loopCount, 0u);
+    EXPECT_EQ(reflectSpirv(kernels::lobes).switchCount, 0u);
 }
 
 TEST(SpirvReflection, RefusesWhatIsNotAModule) {
