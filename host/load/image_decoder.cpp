@@ -1,6 +1,7 @@
 #include "load/image_decoder.h"
 
 #include "load/context.h"
+#include "load/uri.h"
 #include "load/webp.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace isolux {
@@ -15,7 +17,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr int kLargestSide = 16384;
 constexpr int kMostChannels = 4;
 
 /// An image format: its name and that of its MIME type, how it begins, and how many texels a byte can hold at most.
@@ -45,11 +46,16 @@ const Format* findFormat(const EncodedImage& image) {
     return format == kFormats.end() ? nullptr : &*format;
 }
 
-/// The mimeType is for those who choose by it; the bytes decide.
+/// The mimeType, or that of a data URI, is for those who choose by it; the bytes decide.
 void warnOfMimeType(const EncodedImage& image, const Format& format) {
     const std::optional<JsonReader> type = image.where.find("mimeType");
     if (type && type->string() != format.mimeType)
         type->warn(fmt::format("is not {}, which the image is; read all the same", format.mimeType));
+    const std::optional<JsonReader> uri = image.where.find("uri");
+    if (!uri || !isDataUri(uri->string())) return;
+    if (const std::string data = mediaTypeOf(uri->string()); data.starts_with("image/") && data != format.mimeType)
+        uri->warn(fmt::format("its media type {} is not {}, which the image is; read all the same", printable(data),
+                              format.mimeType));
 }
 
 /// A whole JPEG has an end marker after its last scan; its decoder fills what is missing with grey. (Markers do not
@@ -90,8 +96,8 @@ void requireReasonable(const EncodedImage& image, const Format& format, const OI
         image.where.fail(fmt::format("it claims {} x {} texels: {}", spec.width, spec.height, reason));
     };
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1) fail("no picture");
-    if (spec.width > kLargestSide || spec.height > kLargestSide)
-        fail(fmt::format("at most {} a side are supported", kLargestSide));
+    const int largest = image.where.context().limits().imageSide;
+    if (spec.width > largest || spec.height > largest) fail(fmt::format("at most {} a side are supported", largest));
     const double texels = static_cast<double>(spec.width) * spec.height;
     if (texels > format.texelsPerByte * static_cast<double>(image.bytes.size()))
         fail(fmt::format("{} bytes cannot hold them", image.bytes.size()));
@@ -120,6 +126,12 @@ std::vector<Texel> readTexels(const EncodedImage& image, OIIO::ImageInput& input
     return texels;
 }
 
+/// Of one image as it is decoded; rounded up.
+int mostMegabytes(const LoadLimits& limits) {
+    const double bytes = static_cast<double>(limits.imageSide) * limits.imageSide * sizeof(Texel16);
+    return static_cast<int>(std::ceil(bytes / 0x1p20));
+}
+
 /// OpenImageIO's decoder of one image in memory.
 class Decoder {
 public:
@@ -128,7 +140,7 @@ public:
         : bytes_(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size()) {
         requireWhole(image, format);
         OIIO::attribute("limits:channels", kMostChannels);
-        OIIO::attribute("limits:imagesize_MB", kLargestSide / 1024 * (kLargestSide / 1024) * int{sizeof(Texel16)});
+        OIIO::attribute("limits:imagesize_MB", mostMegabytes(image.where.context().limits()));
         input_ = OIIO::ImageInput::create(format.name);
         if (!input_ || !input_->set_ioproxy(&bytes_))
             image.where.fail(fmt::format("OpenImageIO of this build reads no {} from memory", format.mimeType));
@@ -163,13 +175,15 @@ std::vector<Texel8> readTexels8(const EncodedImage& image, const Format& format,
 } // namespace
 
 void requireReasonableHeader(const EncodedImage& image) {
-    if (const Format* format = findFormat(image)) (void)Decoder(image, *format);
+    const Format* format = findFormat(image);
+    if (format == nullptr) return;
+    warnOfMimeType(image, *format);
+    (void)Decoder(image, *format);
 }
 
 TextureImage decodeImage(const EncodedImage& image, std::uint64_t mostBytes) {
     const Format* format = findFormat(image);
     if (format == nullptr) image.where.fail("is neither PNG, JPEG nor WebP by its first bytes");
-    warnOfMimeType(image, *format);
     Decoder decoder(image, *format);
     const OIIO::ImageSpec spec = decoder.input().spec();
     TextureImage result;
@@ -179,8 +193,8 @@ TextureImage decodeImage(const EncodedImage& image, std::uint64_t mostBytes) {
     const std::uint64_t bytes =
         std::uint64_t{result.width} * result.height * (isDeep ? sizeof(Texel16) : sizeof(Texel8));
     if (bytes > mostBytes)
-        image.where.fail(
-            fmt::format("its {} x {} texels exceed what is left of the 4 GiB for all images", spec.width, spec.height));
+        image.where.fail(fmt::format("its {} x {} texels exceed what is left of the {} MiB for all images", spec.width,
+                                     spec.height, image.where.context().limits().texelBytes >> 20));
     if (isDeep)
         result.texels16 = readTexels<Texel16>(image, decoder.input(), OIIO::TypeDesc::UINT16);
     else

@@ -89,9 +89,13 @@ TEST_F(LoadEnvironmentTest, OtherFilesAreRefused) {
     EXPECT_NE(failure(folder_ / "no.exr").find("does not exist"), std::string::npos);
     EXPECT_NE(failure(folder_).find("this is a directory"), std::string::npos);
     std::ofstream(folder_ / "text.exr") << "hello";
-    EXPECT_NE(failure(folder_ / "text.exr").find("not an image that can be read"), std::string::npos);
+    EXPECT_NE(failure(folder_ / "text.exr").find("neither Radiance .hdr nor OpenEXR"), std::string::npos);
+    std::ofstream(folder_ / "start.exr") << "\x76\x2F\x31\x01";
+    EXPECT_NE(failure(folder_ / "start.exr").find("not an image that can be read"), std::string::npos);
     const OIIO::ImageSpec bytes(1, 1, 3, OIIO::TypeDesc::UINT8);
-    EXPECT_NE(failure(write("a.png", bytes, {1, 1, 1})).find("texels are integers"), std::string::npos);
+    EXPECT_NE(failure(write("a.png", bytes, {1, 1, 1})).find("neither Radiance"), std::string::npos);
+    const OIIO::ImageSpec integers(1, 1, 3, OIIO::TypeDesc::UINT32);
+    EXPECT_NE(failure(write("a.exr", integers, {1, 1, 1})).find("texels are integers"), std::string::npos);
     OIIO::ImageSpec cropped = sized(2, 1, 3);
     cropped.full_width = 4;
     EXPECT_NE(failure(write("b.exr", cropped, std::vector<float>(6, 1.0f))).find("data window"), std::string::npos);
