@@ -84,23 +84,28 @@ bool isWholePng(ByteSpan png) {
 void requireWhole(const EncodedImage& image, const Format& format) {
     const bool isWhole = format.mimeType == "image/png"    ? isWholePng(image.bytes)
                          : format.mimeType == "image/jpeg" ? isWholeJpeg(asText(image.bytes))
-                                                           : true; // WebP's decoder says so itself
+                                                           : webpSize(image.bytes).has_value();
     if (!isWhole) image.where.fail("its data is cut short or damaged");
 }
 
 /// OpenImageIO's own words, in one line.
 std::string reasonOf(const OIIO::ImageInput& input) { return printable(input.geterror()); }
 
-void requireReasonable(const EncodedImage& image, const Format& format, const OIIO::ImageSpec& spec) {
+void requireReasonableSize(const EncodedImage& image, const Format& format, std::int64_t width, std::int64_t height) {
     const auto fail = [&](const std::string& reason) {
-        image.where.fail(fmt::format("it claims {} x {} texels: {}", spec.width, spec.height, reason));
+        image.where.fail(fmt::format("it claims {} x {} texels: {}", width, height, reason));
     };
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1) fail("no picture");
+    if (width < 1 || height < 1) fail("no picture");
     const int largest = image.where.context().limits().imageSide;
-    if (spec.width > largest || spec.height > largest) fail(fmt::format("at most {} a side are supported", largest));
-    const double texels = static_cast<double>(spec.width) * spec.height;
+    if (width > largest || height > largest) fail(fmt::format("at most {} a side are supported", largest));
+    const double texels = static_cast<double>(width) * static_cast<double>(height);
     if (texels > format.texelsPerByte * static_cast<double>(image.bytes.size()))
         fail(fmt::format("{} bytes cannot hold them", image.bytes.size()));
+}
+
+void requireReasonable(const EncodedImage& image, const Format& format, const OIIO::ImageSpec& spec) {
+    requireReasonableSize(image, format, spec.width, spec.height);
+    if (spec.depth > 1) image.where.fail("it has layers of depth");
     if (spec.nchannels < 1 || spec.nchannels > kMostChannels)
         image.where.fail(fmt::format("it has {} channels; 1 to 4 are supported", spec.nchannels));
 }
@@ -139,6 +144,10 @@ public:
         // Never written to: the type is that of the interface.
         : bytes_(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size()) {
         requireWhole(image, format);
+        if (format.mimeType == "image/webp") {
+            const WebpSize size = *webpSize(image.bytes);
+            requireReasonableSize(image, format, size.width, size.height);
+        }
         OIIO::attribute("limits:channels", kMostChannels);
         OIIO::attribute("limits:imagesize_MB", mostMegabytes(image.where.context().limits()));
         input_ = OIIO::ImageInput::create(format.name);
