@@ -32,8 +32,16 @@ private:
         const std::optional<JsonReader> uri = buffer.find("uri");
         if (!uri) return binaryChunk(buffer, index);
         const std::string& text = uri->string();
-        if (isDataUri(text)) return keep(decodeDataUri(text, *uri));
+        if (isDataUri(text)) return data(*uri);
         return file(resolveUri(text, sources_.folder, *uri), *uri);
+    }
+
+    // glTF 2.0, 3.6.1.1, gives buffers two media types; the bytes have one meaning only.
+    ByteSpan data(const JsonReader& uri) {
+        const std::string type = mediaTypeOf(uri.string());
+        if (!type.empty() && type != "application/octet-stream" && type != "application/gltf-buffer")
+            uri.warn(fmt::format("its media type {} is not that of a buffer; read all the same", printable(type)));
+        return keep(decodeDataUri(uri.string(), uri));
     }
 
     // glTF 2.0, 4.4.3.3: only the first buffer may be the BIN chunk.

@@ -1,6 +1,8 @@
 // Where a load reports to: errors with file and JSON pointer, and warnings summarised so that a file yields few lines.
 #pragma once
 
+#include "load/limits.h"
+
 #include <cstddef>
 #include <map>
 #include <string>
@@ -14,7 +16,9 @@ namespace isolux {
 
 class LoadContext {
 public:
-    explicit LoadContext(std::string file) : file_(std::move(file)) {}
+    explicit LoadContext(std::string file, const LoadLimits& limits = {}) : file_(std::move(file)), limits_(limits) {}
+
+    [[nodiscard]] const LoadLimits& limits() const { return limits_; }
 
     /// Throws a bad-input Error at a JSON pointer; an empty pointer means the file as a whole.
     [[noreturn]] void fail(std::string_view pointer, std::string_view message) const;
@@ -32,6 +36,7 @@ private:
         std::size_t count = 0;
     };
     std::string file_;
+    LoadLimits limits_;
     std::vector<Warning> warnings_;
     std::size_t unlisted_ = 0;
     std::map<std::string, std::size_t, std::less<>> warningOf_;

@@ -2,32 +2,84 @@
 
 #include "load/bytes.h"
 #include "load/context.h"
+#include "load/exr_header.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace isolux {
 namespace {
 
-constexpr int kMostChannels = 1024;
-constexpr double kMostTexels = 0x1p28;
+using namespace std::string_view_literals;
 
-std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& file, const LoadContext& context) {
-    requireRegularFile(file, {context, ""});
-    OIIO::attribute("limits:channels", kMostChannels);
-    OIIO::attribute("limits:imagesize_MB", static_cast<int>(kMostTexels * sizeof(double) * 4 / 0x1p20));
-    auto input = OIIO::ImageInput::open(file.string());
-    if (!input) context.fail("", "not an image that can be read: " + printable(OIIO::geterror()));
-    return input;
+constexpr int kMostChannels = 1024;
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 34;
+constexpr std::string_view kExr = "openexr";
+
+/// A format: OpenImageIO's name of it, how its files begin, and how many texels a byte can hold at most.
+struct Format {
+    std::string_view name;
+    std::string_view start;
+    double texelsPerByte;
+};
+
+/// Radiance: runs of up to 127 equal bytes take two bytes, and a texel has four of them in separate runs. OpenEXR: the
+/// densest of its compressions, DWA, deflates (1032 bytes of one at most) one value for 8 x 8 texels.
+constexpr std::array<Format, 2> kFormats = {{
+    {"hdr", "#?"sv, 127.0 / 8.0},
+    {kExr, "\x76\x2F\x31\x01"sv, 64.0 * 1032.0},
+}};
+
+/// Told by the first bytes: OpenImageIO left to itself would offer the file to every reader it has.
+const Format& formatOf(ByteSpan bytes, const LoadContext& context) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (const Format& format : kFormats)
+        if (text.starts_with(format.start)) return format;
+    context.fail("", "neither Radiance .hdr nor OpenEXR by its first bytes; an environment map is one of these");
 }
 
+void setLimits(const LoadLimits& limits) {
+    OIIO::attribute("limits:channels", kMostChannels);
+    const double mostBytes = limits.environmentTexels * sizeof(double) * 4;
+    OIIO::attribute("limits:imagesize_MB", static_cast<int>(std::ceil(mostBytes / 0x1p20)));
+}
+
+/// OpenImageIO's decoder of a file, whose bytes are in memory.
+class Decoder {
+public:
+    Decoder(Bytes bytes, const Format& format, const LoadContext& context)
+        : bytes_(std::move(bytes)), reader_(bytes_.data(), bytes_.size()),
+          input_(OIIO::ImageInput::create(std::string(format.name))) {
+        setLimits(context.limits());
+        OIIO::ImageSpec spec;
+        if (!input_ || !input_->set_ioproxy(&reader_))
+            context.fail("", fmt::format("OpenImageIO of this build reads no {} from memory", format.name));
+        if (!input_->open(fmt::format("image.{}", format.name), spec))
+            context.fail("", "not an image that can be read: " + printable(input_->geterror()));
+    }
+
+    [[nodiscard]] OIIO::ImageInput& input() { return *input_; }
+
+private:
+    Bytes bytes_;
+    OIIO::Filesystem::IOMemReader reader_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+};
+
 /// What a header may say before any memory is taken for it.
-void requireReasonable(const OIIO::ImageSpec& spec, const LoadContext& context) {
+void requireReasonable(const OIIO::ImageSpec& spec, double fileTexels, const LoadContext& context) {
     const auto require = [&](bool holds, std::string_view message) {
         if (!holds) context.fail("", message);
     };
     require(spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep, "not a two-dimensional image");
-    require(static_cast<double>(spec.width) * spec.height <= kMostTexels, "larger than the limit of 2^28 texels");
+    const double texels = static_cast<double>(spec.width) * spec.height;
+    require(texels <= context.limits().environmentTexels, "larger than the limit of 2^28 texels");
+    require(texels <= fileTexels, "it claims more texels than its bytes can hold");
     require(spec.nchannels >= 1 && spec.nchannels <= kMostChannels, "more channels than the limit of 1024");
     require(spec.format.is_floating_point(),
             "its texels are integers, which cannot hold a sky; an environment map is Radiance .hdr or OpenEXR");
@@ -60,15 +112,20 @@ void requireRadiance(const EnvironmentMap& map, const LoadContext& context) {
 
 } // namespace
 
-std::shared_ptr<const EnvironmentMap> loadEnvironmentMap(const std::filesystem::path& file) {
-    const LoadContext context(file.string());
-    const auto input = open(file, context);
-    requireReasonable(input->spec(), context);
+std::shared_ptr<const EnvironmentMap> loadEnvironmentMap(const std::filesystem::path& file, const LoadLimits& limits) {
+    const LoadContext context(file.string(), limits);
+    Bytes bytes = readRegularFile(file, {context, "", kLargestFile});
+    const Format& format = formatOf(bytes, context);
+    const double fileTexels = format.texelsPerByte * static_cast<double>(bytes.size());
+    if (format.name == kExr) tameExrHeader(bytes, std::min(limits.environmentTexels, fileTexels), context);
+    Decoder decoder(std::move(bytes), format, context);
+    OIIO::ImageInput& input = decoder.input();
+    requireReasonable(input.spec(), fileTexels, context);
     auto map = std::make_shared<EnvironmentMap>();
     map->name = file.filename().string();
-    map->width = static_cast<std::uint32_t>(input->spec().width);
-    map->height = static_cast<std::uint32_t>(input->spec().height);
-    map->texels = readTexels(*input, context);
+    map->width = static_cast<std::uint32_t>(input.spec().width);
+    map->height = static_cast<std::uint32_t>(input.spec().height);
+    map->texels = readTexels(input, context);
     requireRadiance(*map, context);
     return map;
 }

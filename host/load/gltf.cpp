@@ -1,5 +1,6 @@
 #include "load/gltf.h"
 
+#include "core/error.h"
 #include "load/container.h"
 #include "load/context.h"
 #include "load/node_walker.h"
@@ -103,11 +104,24 @@ void removeFlatNormalMaps(Scene& scene) {
     }
 }
 
+/// The scene's own checks know no file.
+void requireValid(const Scene& scene, const LoadContext& context) {
+    try {
+        validate(scene);
+    } catch (const Error& error) {
+        context.fail("", error.what());
+    }
+}
+
 } // namespace
 
 Scene loadScene(const fs::path& file) {
-    LoadContext context(file.string());
-    const Bytes bytes = readRegularFile(file, {context, "", kLargestFile});
+    const LoadContext context(file.string());
+    return loadSceneFromBytes(readRegularFile(file, {context, "", kLargestFile}), file);
+}
+
+Scene loadSceneFromBytes(ByteSpan bytes, const fs::path& file, const LoadLimits& limits) {
+    LoadContext context(file.string(), limits);
     ContentHash hash;
     hash.add(bytes);
     const Container container = splitContainer(bytes, context);
@@ -126,7 +140,7 @@ Scene loadScene(const fs::path& file) {
     removeFlatNormalMaps(scene);
     scene.warnings = context.warnings();
     scene.contentHash = hash.hexadecimal();
-    validate(scene);
+    requireValid(scene, context);
     return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "load/image_decoder.h"
 
 #include "load/context.h"
+#include "load/uri.h"
 #include "load/webp.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace isolux {
@@ -15,7 +17,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr int kLargestSide = 16384;
 constexpr int kMostChannels = 4;
 
 /// An image format: its name and that of its MIME type, how it begins, and how many texels a byte can hold at most.
@@ -45,11 +46,16 @@ const Format* findFormat(const EncodedImage& image) {
     return format == kFormats.end() ? nullptr : &*format;
 }
 
-/// The mimeType is for those who choose by it; the bytes decide.
+/// The mimeType, or that of a data URI, is for those who choose by it; the bytes decide.
 void warnOfMimeType(const EncodedImage& image, const Format& format) {
     const std::optional<JsonReader> type = image.where.find("mimeType");
     if (type && type->string() != format.mimeType)
         type->warn(fmt::format("is not {}, which the image is; read all the same", format.mimeType));
+    const std::optional<JsonReader> uri = image.where.find("uri");
+    if (!uri || !isDataUri(uri->string())) return;
+    if (const std::string data = mediaTypeOf(uri->string()); data.starts_with("image/") && data != format.mimeType)
+        uri->warn(fmt::format("its media type {} is not {}, which the image is; read all the same", printable(data),
+                              format.mimeType));
 }
 
 /// A whole JPEG has an end marker after its last scan; its decoder fills what is missing with grey. (Markers do not
@@ -78,23 +84,28 @@ bool isWholePng(ByteSpan png) {
 void requireWhole(const EncodedImage& image, const Format& format) {
     const bool isWhole = format.mimeType == "image/png"    ? isWholePng(image.bytes)
                          : format.mimeType == "image/jpeg" ? isWholeJpeg(asText(image.bytes))
-                                                           : true; // WebP's decoder says so itself
+                                                           : webpSize(image.bytes).has_value();
     if (!isWhole) image.where.fail("its data is cut short or damaged");
 }
 
 /// OpenImageIO's own words, in one line.
 std::string reasonOf(const OIIO::ImageInput& input) { return printable(input.geterror()); }
 
-void requireReasonable(const EncodedImage& image, const Format& format, const OIIO::ImageSpec& spec) {
+void requireReasonableSize(const EncodedImage& image, const Format& format, std::int64_t width, std::int64_t height) {
     const auto fail = [&](const std::string& reason) {
-        image.where.fail(fmt::format("it claims {} x {} texels: {}", spec.width, spec.height, reason));
+        image.where.fail(fmt::format("it claims {} x {} texels: {}", width, height, reason));
     };
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1) fail("no picture");
-    if (spec.width > kLargestSide || spec.height > kLargestSide)
-        fail(fmt::format("at most {} a side are supported", kLargestSide));
-    const double texels = static_cast<double>(spec.width) * spec.height;
+    if (width < 1 || height < 1) fail("no picture");
+    const int largest = image.where.context().limits().imageSide;
+    if (width > largest || height > largest) fail(fmt::format("at most {} a side are supported", largest));
+    const double texels = static_cast<double>(width) * static_cast<double>(height);
     if (texels > format.texelsPerByte * static_cast<double>(image.bytes.size()))
         fail(fmt::format("{} bytes cannot hold them", image.bytes.size()));
+}
+
+void requireReasonable(const EncodedImage& image, const Format& format, const OIIO::ImageSpec& spec) {
+    requireReasonableSize(image, format, spec.width, spec.height);
+    if (spec.depth > 1) image.where.fail("it has layers of depth");
     if (spec.nchannels < 1 || spec.nchannels > kMostChannels)
         image.where.fail(fmt::format("it has {} channels; 1 to 4 are supported", spec.nchannels));
 }
@@ -120,6 +131,12 @@ std::vector<Texel> readTexels(const EncodedImage& image, OIIO::ImageInput& input
     return texels;
 }
 
+/// Of one image as it is decoded; rounded up.
+int mostMegabytes(const LoadLimits& limits) {
+    const double bytes = static_cast<double>(limits.imageSide) * limits.imageSide * sizeof(Texel16);
+    return static_cast<int>(std::ceil(bytes / 0x1p20));
+}
+
 /// OpenImageIO's decoder of one image in memory.
 class Decoder {
 public:
@@ -127,8 +144,12 @@ public:
         // Never written to: the type is that of the interface.
         : bytes_(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size()) {
         requireWhole(image, format);
+        if (format.mimeType == "image/webp") {
+            const WebpSize size = *webpSize(image.bytes);
+            requireReasonableSize(image, format, size.width, size.height);
+        }
         OIIO::attribute("limits:channels", kMostChannels);
-        OIIO::attribute("limits:imagesize_MB", kLargestSide / 1024 * (kLargestSide / 1024) * int{sizeof(Texel16)});
+        OIIO::attribute("limits:imagesize_MB", mostMegabytes(image.where.context().limits()));
         input_ = OIIO::ImageInput::create(format.name);
         if (!input_ || !input_->set_ioproxy(&bytes_))
             image.where.fail(fmt::format("OpenImageIO of this build reads no {} from memory", format.mimeType));
@@ -163,13 +184,15 @@ std::vector<Texel8> readTexels8(const EncodedImage& image, const Format& format,
 } // namespace
 
 void requireReasonableHeader(const EncodedImage& image) {
-    if (const Format* format = findFormat(image)) (void)Decoder(image, *format);
+    const Format* format = findFormat(image);
+    if (format == nullptr) return;
+    warnOfMimeType(image, *format);
+    (void)Decoder(image, *format);
 }
 
 TextureImage decodeImage(const EncodedImage& image, std::uint64_t mostBytes) {
     const Format* format = findFormat(image);
     if (format == nullptr) image.where.fail("is neither PNG, JPEG nor WebP by its first bytes");
-    warnOfMimeType(image, *format);
     Decoder decoder(image, *format);
     const OIIO::ImageSpec spec = decoder.input().spec();
     TextureImage result;
@@ -179,8 +202,8 @@ TextureImage decodeImage(const EncodedImage& image, std::uint64_t mostBytes) {
     const std::uint64_t bytes =
         std::uint64_t{result.width} * result.height * (isDeep ? sizeof(Texel16) : sizeof(Texel8));
     if (bytes > mostBytes)
-        image.where.fail(
-            fmt::format("its {} x {} texels exceed what is left of the 4 GiB for all images", spec.width, spec.height));
+        image.where.fail(fmt::format("its {} x {} texels exceed what is left of the {} MiB for all images", spec.width,
+                                     spec.height, image.where.context().limits().texelBytes >> 20));
     if (isDeep)
         result.texels16 = readTexels<Texel16>(image, decoder.input(), OIIO::TypeDesc::UINT16);
     else

@@ -36,8 +36,16 @@ void boundJson(std::string_view text, const LoadContext& context) {
     }
 }
 
-/// A key as part of a JSON pointer (RFC 6901, 3).
-std::string escaped(std::string_view key) {
+std::string locate(std::string_view text, std::size_t position) {
+    const std::string_view before = text.substr(0, position);
+    const std::size_t lineStart = before.rfind('\n') + 1; // npos + 1 is 0: the first line
+    return fmt::format("line {}, column {}", 1 + std::count(before.begin(), before.end(), '\n'),
+                       position - lineStart + 1);
+}
+
+} // namespace
+
+std::string escapedKey(std::string_view key) {
     std::string result;
     for (const char c : key) {
         if (c == '~')
@@ -49,15 +57,6 @@ std::string escaped(std::string_view key) {
     }
     return result;
 }
-
-std::string locate(std::string_view text, std::size_t position) {
-    const std::string_view before = text.substr(0, position);
-    const std::size_t lineStart = before.rfind('\n') + 1; // npos + 1 is 0: the first line
-    return fmt::format("line {}, column {}", 1 + std::count(before.begin(), before.end(), '\n'),
-                       position - lineStart + 1);
-}
-
-} // namespace
 
 json parseJson(std::string_view text, const LoadContext& context) {
     boundJson(text, context);
@@ -82,7 +81,7 @@ std::optional<JsonReader> JsonReader::find(std::string_view key) const {
     requireObject();
     const auto member = value_->find(key);
     if (member == value_->end()) return std::nullopt;
-    return JsonReader(*member, fmt::format("{}/{}", pointer_, escaped(key)), *context_);
+    return JsonReader(*member, fmt::format("{}/{}", pointer_, escapedKey(key)), *context_);
 }
 
 JsonReader JsonReader::at(std::string_view key) const {
@@ -152,6 +151,11 @@ std::size_t JsonReader::index(std::size_t count, std::string_view target) const 
     const std::uint64_t value = integer();
     if (value >= count) fail(fmt::format("refers to {} {}, but there are only {} of them", target, value, count));
     return static_cast<std::size_t>(value);
+}
+
+JsonReader JsonReader::elementOf(const JsonReader& root, std::string_view target) const {
+    const std::size_t position = index(root.sizeOf(target), target);
+    return root.at(target).element(position);
 }
 
 json JsonReader::numbers(std::size_t count) const {

@@ -15,6 +15,9 @@ class LoadContext;
 /// Parses text after bounding its nesting and its number of values, on which memory and stack depend.
 [[nodiscard]] nlohmann::json parseJson(std::string_view text, const LoadContext& context);
 
+/// A key as part of a JSON pointer (RFC 6901, 3).
+[[nodiscard]] std::string escapedKey(std::string_view key);
+
 /// A JSON value together with its pointer. Every function that finds another type than asked for throws Error naming
 /// it.
 class JsonReader {
@@ -24,6 +27,7 @@ public:
 
     [[nodiscard]] const std::string& pointer() const { return pointer_; }
     [[nodiscard]] LoadContext& context() const { return *context_; }
+    [[nodiscard]] const nlohmann::json& value() const { return *value_; }
     [[nodiscard]] bool isObject() const { return value_->is_object(); }
 
     /// Member of an object: required, or if it is there.
@@ -44,6 +48,8 @@ public:
     [[nodiscard]] std::uint64_t integerBetween(std::uint64_t lowest, std::uint64_t highest) const;
     /// An index into the document's array `target`, which has `count` elements.
     [[nodiscard]] std::size_t index(std::size_t count, std::string_view target) const;
+    /// The element of the document's array `target` that this is the index of.
+    [[nodiscard]] JsonReader elementOf(const JsonReader& root, std::string_view target) const;
     /// An array of exactly `count` numbers.
     [[nodiscard]] nlohmann::json numbers(std::size_t count) const;
     [[nodiscard]] nlohmann::json numbersBetween(std::size_t count, double lowest, double highest) const;

@@ -22,15 +22,6 @@ int attributeOf(const tinygltf::Primitive& primitive, const std::string& name) {
 
 std::string uvAttribute(std::uint32_t set) { return fmt::format("TEXCOORD_{}", set); }
 
-/// Whether an attribute's type is one that KHR_mesh_quantization adds; glTF itself has small coordinates and colours.
-bool isQuantised(const std::string& name, const tinygltf::Accessor& accessor) {
-    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT || name == "COLOR_0" || name == kIndicesAttribute)
-        return false;
-    const bool isUnsigned = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                            accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-    return !(name.starts_with("TEXCOORD_") && isUnsigned && accessor.normalized);
-}
-
 /// The vertices that `indices` use, in ascending order, if there are fewer indices than vertices: primitives often
 /// share one large vertex buffer, and a copy of it for each would not fit. Otherwise all vertices.
 std::vector<std::uint32_t> verticesUsed(const std::vector<std::uint32_t>& indices, std::size_t vertexCount) {
@@ -102,7 +93,6 @@ Mesh MeshBuilder::buildMesh(const Source& source) {
     mesh.material = materialOf(source);
     const VertexAccessors accessors = accessorsOf(source, mesh.material);
     charge(source, accessors);
-    warnIfUndeclared(source);
     std::vector<std::uint32_t> indices = readIndices(source, vertexCount);
     const std::vector<std::uint32_t> vertices = verticesUsed(indices, vertexCount);
     renumber(indices, vertices);
@@ -112,16 +102,12 @@ Mesh MeshBuilder::buildMesh(const Source& source) {
     return mesh;
 }
 
-/// The primitive's material; without the maps for which it has no coordinates.
+/// The primitive's material; without the maps for which it has no coordinates, as was warned of at verification.
 std::uint32_t MeshBuilder::materialOf(const Source& source) {
     const std::uint32_t material = materials_.indexOf(source.primitive.material);
     std::vector<std::uint32_t> missing;
-    for (const std::uint32_t set : materials_.at(material).uvSets) {
-        if (attributeOf(source.primitive, uvAttribute(set)) >= 0) continue;
-        missing.push_back(set);
-        context_.warn(source.pointer,
-                      fmt::format("it has no {}, which maps of its material use; they are left out", uvAttribute(set)));
-    }
+    for (const std::uint32_t set : materials_.at(material).uvSets)
+        if (attributeOf(source.primitive, uvAttribute(set)) < 0) missing.push_back(set);
     return materials_.indexWithout(material, missing);
 }
 
@@ -181,23 +167,10 @@ std::vector<std::uint32_t> MeshBuilder::readIndices(const Source& source, std::s
     return indices;
 }
 
-/// Integer vertices are an extension, and a file that has them must require it; they mean the same without.
-void MeshBuilder::warnIfUndeclared(const Source& source) {
-    const auto& required = asset_.model.extensionsRequired;
-    if (std::find(required.begin(), required.end(), "KHR_mesh_quantization") != required.end()) return;
-    for (const auto& [name, accessor] : source.primitive.attributes) {
-        if (!isQuantised(name, accessorAt(accessor))) continue;
-        context_.warn(source.pointer, "integer vertices without KHR_mesh_quantization in extensionsRequired; read as "
-                                      "that extension has them");
-        return;
-    }
-}
-
 /// Many primitives may refer to the same data, and an accessor without a bufferView to none at all, so that a small
 /// file could ask for any amount of memory and time. What a primitive takes is known before any of it is allocated.
 void MeshBuilder::charge(const Source& source, const VertexAccessors& accessors) {
     // Meshes that differ in material alone share data too, so a large factor is no proof of malice.
-    constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 30;
     constexpr std::uint64_t kClaimsAllowed = std::uint64_t{1} << 20;
     constexpr std::uint64_t kLargestFactor = 64;
     const auto exceeds = [&](std::uint64_t bytes, std::uint64_t allowed) {
@@ -211,7 +184,7 @@ void MeshBuilder::charge(const Source& source, const VertexAccessors& accessors)
         context_.fail(source.pointer, fmt::format("its {} elements without a bufferView come to over {} times the "
                                                   "size of the buffers; store them in one",
                                                   sequence.count, kLargestFactor));
-    if (exceeds(bytesBuilt_, kAlwaysAllowed))
+    if (exceeds(bytesBuilt_, context_.limits().meshBytes))
         context_.fail("/meshes",
                       fmt::format("the meshes expand to over {} times the size of the buffers; refer to the same "
                                   "mesh from several nodes instead of repeating its primitives",

@@ -30,7 +30,6 @@ private:
     [[nodiscard]] bool hasNormalMap(std::uint32_t material) const;
     [[nodiscard]] VertexAccessors accessorsOf(const Source& source, std::uint32_t material);
     void completeTangents(Mesh& mesh) const;
-    void warnIfUndeclared(const Source& source);
     void charge(const Source& source, const VertexAccessors& accessors);
     [[nodiscard]] std::uint64_t bytesToBuild(const Source& source, const VertexAccessors& accessors) const;
     [[nodiscard]] const tinygltf::Accessor& sequenceOf(const Source& source) const;

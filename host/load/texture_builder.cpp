@@ -1,5 +1,6 @@
 #include "load/texture_builder.h"
 
+#include "load/context.h"
 #include "load/uri.h"
 
 #include <fmt/format.h>
@@ -8,9 +9,6 @@
 
 namespace isolux {
 namespace {
-
-/// Texels of all images together.
-constexpr std::uint64_t kMostTexelBytes = std::uint64_t{1} << 32;
 
 std::uint64_t bytesOf(const TextureImage& image) {
     return image.texels8.size() * sizeof(Texel8) + image.texels16.size() * sizeof(Texel16);
@@ -43,8 +41,9 @@ public:
 private:
     std::uint32_t imageFor(std::uint32_t fileImage) {
         if (const auto known = imageOf_.find(fileImage); known != imageOf_.end()) return known->second;
-        TextureImage image = decodeImage(images_[fileImage], kMostTexelBytes - texelBytes_);
-        image.name = nameOf(images_[fileImage].where, fileImage);
+        const EncodedImage& encoded = images_[fileImage];
+        TextureImage image = decodeImage(encoded, encoded.where.context().limits().texelBytes - texelBytes_);
+        image.name = nameOf(encoded.where, fileImage);
         texelBytes_ += bytesOf(image);
         scene_.images.push_back(std::move(image));
         return imageOf_.emplace(fileImage, static_cast<std::uint32_t>(scene_.images.size() - 1)).first->second;

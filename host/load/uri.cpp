@@ -80,6 +80,14 @@ bool contains(const fs::path& folder, const fs::path& path) {
 
 bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
 
+std::string mediaTypeOf(std::string_view dataUri) {
+    const std::size_t start = std::string_view("data:").size();
+    std::string type(dataUri.substr(start, dataUri.find_first_of(";,", start) - start));
+    for (char& c : type)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return type;
+}
+
 Bytes decodeDataUri(std::string_view uri, const JsonReader& where) {
     constexpr std::string_view kMarker = ";base64,";
     const std::size_t marker = uri.find(kMarker);

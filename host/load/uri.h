@@ -11,6 +11,9 @@ class JsonReader;
 
 [[nodiscard]] bool isDataUri(std::string_view uri);
 
+/// The media type of a data URI, in lower case; empty if it has none.
+[[nodiscard]] std::string mediaTypeOf(std::string_view dataUri);
+
 /// The bytes of "data:<type>;base64,<text>".
 [[nodiscard]] Bytes decodeDataUri(std::string_view uri, const JsonReader& where);
 

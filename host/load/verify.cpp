@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <set>
 
 namespace isolux {
 namespace {
@@ -18,10 +19,6 @@ constexpr std::array<std::string_view, 10> kSupportedExtensions = {
     "KHR_materials_unlit",  "KHR_materials_volume",   "KHR_mesh_quantization",
     "KHR_texture_transform"};
 
-bool isSupported(std::string_view extension) {
-    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
-}
-
 /// The part of "2.1" before and after the dot; fails unless both are numbers.
 std::pair<int, int> parseVersion(const JsonReader& version) {
     const std::string& text = version.string();
@@ -31,6 +28,16 @@ std::pair<int, int> parseVersion(const JsonReader& version) {
     if (!isValid) version.fail(fmt::format("'{}' is not a version such as 2.0", printable(text)));
     const std::size_t dot = text.find('.');
     return {std::stoi(text.substr(0, dot)), std::stoi(text.substr(dot + 1))};
+}
+
+/// Names of extensions that a list has twice.
+void warnOfRepeats(const JsonReader& root, std::string_view list) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < root.sizeOf(list); ++i) {
+        const JsonReader entry = root.at(list).element(i);
+        if (!names.insert(entry.string()).second)
+            entry.warn(fmt::format("{} is listed twice", printable(entry.string())));
+    }
 }
 
 using VerifyPart = json (*)(const JsonReader& part, const JsonReader& root);
@@ -44,6 +51,10 @@ json verifyAll(const JsonReader& root, std::string_view key, VerifyPart verify) 
 
 } // namespace
 
+bool isSupportedExtension(std::string_view name) {
+    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), name) != kSupportedExtensions.end();
+}
+
 void verifyAsset(const JsonReader& root) {
     const JsonReader version = root.at("asset").at("version");
     if (parseVersion(version).first != 2)
@@ -55,16 +66,17 @@ void verifyAsset(const JsonReader& root) {
 }
 
 json verifyExtensions(const JsonReader& root) {
+    for (const char* list : {"extensionsUsed", "extensionsRequired"}) warnOfRepeats(root, list);
     json required = json::array();
     for (std::size_t i = 0; i < root.sizeOf("extensionsRequired"); ++i) {
         const JsonReader entry = root.at("extensionsRequired").element(i);
-        if (const std::string& name = entry.string(); !isSupported(name))
+        if (const std::string& name = entry.string(); !isSupportedExtension(name))
             entry.fail(fmt::format("the file requires {}, which is not supported; export without it", printable(name)));
         required.push_back(entry.string());
     }
     for (std::size_t i = 0; i < root.sizeOf("extensionsUsed"); ++i) {
         const JsonReader entry = root.at("extensionsUsed").element(i);
-        if (const std::string& name = entry.string(); !isSupported(name))
+        if (const std::string& name = entry.string(); !isSupportedExtension(name))
             entry.warn(fmt::format("{} is not supported; ignored", printable(name)));
     }
     return required;
@@ -102,6 +114,7 @@ json verifyDocument(const JsonReader& root) {
     verifyHierarchy(root);
     verifyImages(root);
     verifyReferences(root);
+    warnOfMembers(root.value(), root.context());
     return document;
 }
 

@@ -70,7 +70,7 @@ void verifyRange(const JsonReader& where, const JsonReader& view, const Layout& 
 }
 
 JsonReader viewOf(const JsonReader& where, const JsonReader& root) {
-    return root.at("bufferViews").element(where.at("bufferView").index(root.sizeOf("bufferViews"), "bufferViews"));
+    return where.at("bufferView").elementOf(root, "bufferViews");
 }
 
 /// One half of a sparse accessor: its `indices` or `values`, which lie close together (glTF 2.0, 5.3 and 5.4).

@@ -168,6 +168,21 @@ FileMaterial verifyMaterial(const JsonReader& source, const JsonReader& root) {
     return numberUvSets(std::move(material));
 }
 
+std::set<std::uint32_t> uvSetsOf(const JsonReader& material) {
+    const Parts parts{material};
+    std::set<std::uint32_t> sets;
+    const auto add = [&](const Owner& owner, std::initializer_list<std::string_view> keys) {
+        for (const std::string_view key : keys)
+            if (const std::optional<JsonReader> info = findIn(owner, key)) sets.insert(uvSetOf(*info));
+    };
+    add(material, {"normalTexture", "occlusionTexture", "emissiveTexture"});
+    add(parts.pbr, {"baseColorTexture", "metallicRoughnessTexture"});
+    add(parts.specular, {"specularTexture", "specularColorTexture"});
+    add(parts.transmission, {"transmissionTexture"});
+    add(parts.volume, {"thicknessTexture"});
+    return sets;
+}
+
 std::vector<FileMaterial> verifyMaterials(const JsonReader& root) {
     std::vector<FileMaterial> materials;
     for (std::size_t i = 0; i < root.sizeOf("materials"); ++i) {

@@ -18,7 +18,7 @@ constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
 JsonReader accessorOf(const JsonReader& reference, const JsonReader& root) {
-    return root.at("accessors").element(reference.index(root.sizeOf("accessors"), "accessors"));
+    return reference.elementOf(root, "accessors");
 }
 
 /// All attributes of a primitive (or of a morph target of it) have as many elements as its vertices.
@@ -112,6 +112,37 @@ void warnIfUnaligned(const JsonReader& attribute, const JsonReader& accessor, co
         attribute.warn("vertices do not start at multiples of four bytes, as glTF asks; read as they lie");
 }
 
+/// Whether an attribute's type is one that KHR_mesh_quantization adds; glTF itself has small coordinates and colours.
+bool isQuantised(std::string_view name, const JsonReader& accessor) {
+    const std::uint64_t type = accessor.at("componentType").integer();
+    if (type == kFloat || name == "COLOR_0" || !isKnown(name)) return false;
+    const bool isUnsigned = type == kUnsignedByte || type == kUnsignedShort;
+    const bool isNormalized = accessor.find("normalized") && accessor.at("normalized").boolean();
+    return !(name.starts_with("TEXCOORD_") && isUnsigned && isNormalized);
+}
+
+/// Integer vertices are an extension, and a file that has them must require it; they mean the same without.
+void warnIfUndeclared(const JsonReader& primitive, const JsonReader& root) {
+    for (std::size_t i = 0; i < root.sizeOf("extensionsRequired"); ++i)
+        if (root.at("extensionsRequired").element(i).string() == "KHR_mesh_quantization") return;
+    const JsonReader attributes = primitive.at("attributes");
+    for (const std::string& name : attributes.keys()) {
+        if (!isQuantised(name, accessorOf(attributes.at(name), root))) continue;
+        primitive.warn("integer vertices without KHR_mesh_quantization in extensionsRequired; read as that extension "
+                       "has them");
+        return;
+    }
+}
+
+/// What the material's maps ask for and the primitive does not have.
+void warnOfMissingSets(const JsonReader& primitive, const JsonReader& material) {
+    const JsonReader attributes = primitive.at("attributes");
+    for (const std::uint32_t set : uvSetsOf(material))
+        if (!attributes.find(fmt::format("TEXCOORD_{}", set)))
+            primitive.warn(
+                fmt::format("it has no TEXCOORD_{}, which maps of its material use; they are left out", set));
+}
+
 json verifyAttributes(const JsonReader& attributes, const JsonReader& root) {
     json result = json::object();
     for (const std::string& name : attributes.keys()) {
@@ -134,10 +165,13 @@ json verifyPrimitive(const JsonReader& primitive, const JsonReader& root) {
         verifyTargets(primitive, root, vertexCount);
     }
     warnOfColors(attributes);
+    warnIfUndeclared(primitive, root);
     if (const std::optional<JsonReader> indices = primitive.find("indices"))
         result["attributes"][kIndicesAttribute] = verifyIndices(*indices, root);
-    if (const std::optional<JsonReader> material = primitive.find("material"))
+    if (const std::optional<JsonReader> material = primitive.find("material")) {
         result["material"] = material->index(root.sizeOf("materials"), "materials");
+        warnOfMissingSets(primitive, material->elementOf(root, "materials"));
+    }
     const std::uint64_t mode = primitive.find("mode") ? primitive.at("mode").integerBetween(0, 6) : kTriangles;
     if (mode < kTriangles) primitive.warn("points and lines are not supported; left out");
     result["mode"] = mode;

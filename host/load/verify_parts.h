@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 
 #include <limits>
+#include <set>
 
 namespace isolux {
 
@@ -22,6 +23,8 @@ void verifyAsset(const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyNode(const JsonReader& node, const JsonReader& root);
 [[nodiscard]] nlohmann::json verifyScene(const JsonReader& scene, const JsonReader& root);
 
+[[nodiscard]] bool isSupportedExtension(std::string_view name);
+
 /// Whether a component type of an accessor may be that of indices: unsigned integers.
 [[nodiscard]] bool isIndexType(std::uint64_t componentType);
 
@@ -31,10 +34,16 @@ void verifyHierarchy(const JsonReader& root);
 /// A material's use of a texture (textureInfo); its texture and set are the file's numbers. No texture, with a warning,
 /// where there is no image to use.
 [[nodiscard]] TextureMap verifyTextureMap(const JsonReader& info, const JsonReader& root);
+/// The set of coordinates that a textureInfo asks for, and those of all the textureInfos of a material.
+[[nodiscard]] std::uint32_t uvSetOf(const JsonReader& info);
+[[nodiscard]] std::set<std::uint32_t> uvSetsOf(const JsonReader& material);
 void verifyImages(const JsonReader& root);
 
 /// References among what is not supported yet (skins, animations).
 void verifyReferences(const JsonReader& root);
+
+/// Warns of what nothing reads and is wrong all the same: extensions undeclared or out of place, empty arrays.
+void warnOfMembers(const nlohmann::json& root, LoadContext& context);
 
 /// The lights of KHR_lights_punctual, and the one that a node refers to.
 [[nodiscard]] nlohmann::json verifyLights(const JsonReader& root);

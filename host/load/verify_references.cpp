@@ -10,10 +10,19 @@ void verifyReference(const JsonReader& owner, std::string_view key, const JsonRe
         (void)reference->index(root.sizeOf(target), target);
 }
 
+void verifyBindMatrices(const JsonReader& skin, const JsonReader& root) {
+    const std::optional<JsonReader> matrices = skin.find("inverseBindMatrices");
+    if (!matrices) return;
+    const JsonReader accessor = matrices->elementOf(root, "accessors");
+    if (accessor.at("type").string() != "MAT4" || accessor.at("componentType").integer() != 5126)
+        matrices->warn("refers to an accessor that is not MAT4 of single precision; skins are not supported, so that "
+                       "nothing reads it");
+}
+
 void verifySkins(const JsonReader& root) {
     for (std::size_t i = 0; i < root.sizeOf("skins"); ++i) {
         const JsonReader skin = root.at("skins").element(i);
-        verifyReference(skin, "inverseBindMatrices", root, "accessors");
+        verifyBindMatrices(skin, root);
         verifyReference(skin, "skeleton", root, "nodes");
         const JsonReader joints = skin.at("joints");
         for (std::size_t j = 0; j < joints.size(); ++j) (void)joints.element(j).index(root.sizeOf("nodes"), "nodes");

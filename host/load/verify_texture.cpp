@@ -65,8 +65,7 @@ std::optional<std::uint32_t> verifySource(const JsonReader& texture, const JsonR
 FileTexture verifyTexture(const JsonReader& texture, const JsonReader& root) {
     FileTexture result{verifySource(texture, root)};
     if (const std::optional<JsonReader> sampler = texture.find("sampler"))
-        result.sampling =
-            verifySampler(root.at("samplers").element(sampler->index(root.sizeOf("samplers"), "samplers")));
+        result.sampling = verifySampler(sampler->elementOf(root, "samplers"));
     return result;
 }
 
@@ -94,14 +93,18 @@ std::uint32_t setOr(const JsonReader& owner, std::uint32_t fallback) {
 
 } // namespace
 
+std::uint32_t uvSetOf(const JsonReader& info) {
+    const std::uint32_t set = setOr(info, 0);
+    const std::optional<JsonReader> transform = findExtension(info, "KHR_texture_transform");
+    return transform ? setOr(*transform, set) : set;
+}
+
 TextureMap verifyTextureMap(const JsonReader& info, const JsonReader& root) {
     TextureMap map;
     const std::size_t texture = info.at("index").index(root.sizeOf("textures"), "textures");
-    map.uvSet = setOr(info, 0);
-    if (const std::optional<JsonReader> transform = findExtension(info, "KHR_texture_transform")) {
-        map.uvSet = setOr(*transform, map.uvSet);
+    map.uvSet = uvSetOf(info);
+    if (const std::optional<JsonReader> transform = findExtension(info, "KHR_texture_transform"))
         readTransform(*transform, map);
-    }
     const JsonReader source = root.at("textures").element(texture);
     if (verifyTexture(source, root).image)
         map.texture = static_cast<std::uint32_t>(texture);

@@ -27,11 +27,17 @@ glm::vec4 repaired(const glm::vec4& tangent) {
     return {unit, tangent.w < 0.0f ? -1.0f : 1.0f};
 }
 
-/// As far from unit as rounding to the coarsest type, bytes, can bring a tangent: half a step of 1/127 in each
+/// Unit; one without length stays zero, and the face's own normal takes its place.
+Vec3f repaired(const Vec3f& normal) {
+    const double length = glm::length(Vec3d(normal));
+    return Vec3f(length > 0.0 ? Vec3d(normal) / length : Vec3d(0.0));
+}
+
+/// As far from unit as rounding to the coarsest type, bytes, can bring a direction: half a step of 1/127 in each
 /// component.
-bool isUnit(const glm::vec4& tangent) {
+bool isUnit(const Vec3d& v) {
     const double error = std::sqrt(3.0) / 254.0;
-    return std::abs(glm::length(Vec3d(tangent)) - 1.0) <= error && std::abs(tangent.w) == 1.0f;
+    return std::abs(glm::length(v) - 1.0) <= error;
 }
 
 /// The same attribute for the corners of every triangle in turn.
@@ -95,16 +101,31 @@ std::vector<glm::vec4> VertexReader::readTangents(int accessor, std::span<const 
     std::vector<glm::vec4> tangents = gather<4>(accessor, vertices);
     bool areUnit = true;
     for (glm::vec4& tangent : tangents) {
-        areUnit = areUnit && isUnit(tangent);
+        areUnit = areUnit && isUnit(Vec3d(tangent)) && std::abs(tangent.w) == 1.0f;
         tangent = repaired(tangent);
     }
     if (!areUnit) context_.warn(pointer_, "tangents that are not of length 1, or have no sign, are put right");
     return tangents;
 }
 
+/// Normals that are as near unit as their type allows stay as they are, to the last bit.
+std::vector<Vec3f> VertexReader::readNormals(int accessor, std::span<const std::uint32_t> vertices) const {
+    std::vector<Vec3f> normals = gather<3>(accessor, vertices);
+    bool areUnit = true;
+    for (Vec3f& normal : normals) {
+        if (isUnit(Vec3d(normal))) continue;
+        areUnit = false;
+        normal = repaired(normal);
+    }
+    if (!areUnit)
+        context_.warn(pointer_, "normals that are not of length 1 are put right; those of length 0 count as "
+                                "none");
+    return normals;
+}
+
 void VertexReader::read(const VertexAccessors& accessors, std::span<const std::uint32_t> vertices, Mesh& mesh) const {
     mesh.positions = gather<3>(accessors.position, vertices);
-    if (accessors.normal >= 0) mesh.normals = gather<3>(accessors.normal, vertices);
+    if (accessors.normal >= 0) mesh.normals = readNormals(accessors.normal, vertices);
     if (accessors.tangent >= 0) mesh.tangents = readTangents(accessors.tangent, vertices);
     if (accessors.color >= 0) mesh.colors = readColors(accessors.color, vertices);
     for (const int uv : accessors.uvs) mesh.uvs.push_back(gather<2>(uv, vertices));

@@ -23,14 +23,15 @@ public:
     VertexReader(const Asset& asset, LoadContext& context, std::string_view pointer)
         : asset_(asset), context_(context), pointer_(pointer) {}
 
-    /// Fills a mesh's attributes for the given vertices. Numbers must be finite; colours beyond [0, 1] and tangents
-    /// that are not unit, or without a sign, are put right, with a warning.
+    /// Fills a mesh's attributes for the given vertices. Numbers must be finite; colours beyond [0, 1], and normals and
+    /// tangents that are not unit, or without a sign, are put right, with a warning.
     void read(const VertexAccessors& accessors, std::span<const std::uint32_t> vertices, Mesh& mesh) const;
 
 private:
     template <int N>
     [[nodiscard]] std::vector<glm::vec<N, float>> gather(int accessor, std::span<const std::uint32_t> vertices) const;
     [[nodiscard]] std::vector<glm::vec4> readColors(int accessor, std::span<const std::uint32_t> vertices) const;
+    [[nodiscard]] std::vector<Vec3f> readNormals(int accessor, std::span<const std::uint32_t> vertices) const;
     [[nodiscard]] std::vector<glm::vec4> readTangents(int accessor, std::span<const std::uint32_t> vertices) const;
 
     const Asset& asset_;

@@ -10,16 +10,18 @@ constexpr std::size_t kHeaderBytes = 12; // "RIFF", length, "WEBP"
 constexpr std::size_t kChunkHeaderBytes = 8;
 constexpr std::uint8_t kAlphaFlag = 0x10;
 
-std::size_t readLength(ByteSpan bytes) {
-    std::size_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i) length |= std::size_t{bytes[i]} << (8 * i);
-    return length;
+std::uint32_t readNumber(ByteSpan bytes, std::size_t count) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < count; ++i) number |= std::uint32_t{bytes[i]} << (8 * i);
+    return number;
 }
+
+std::string_view asText(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
 /// Removes what one chunk says of alpha: a flag of VP8X and of VP8L (its 29th bit after a byte of signature), and the
 /// whole of ALPH, which is renamed to one that decoders skip.
 void removeAlpha(std::span<std::uint8_t> name, std::span<std::uint8_t> data) {
-    const std::string_view text(reinterpret_cast<const char*>(name.data()), name.size());
+    const std::string_view text = asText(name);
     if (text == "VP8X" && !data.empty())
         data[0] &= static_cast<std::uint8_t>(~kAlphaFlag);
     else if (text == "VP8L" && data.size() > 4)
@@ -30,13 +32,28 @@ void removeAlpha(std::span<std::uint8_t> name, std::span<std::uint8_t> data) {
 
 } // namespace
 
+std::optional<WebpSize> webpSize(ByteSpan webp) {
+    constexpr std::size_t kLongest = 10; // of what is read here of a chunk
+    if (webp.size() < kHeaderBytes + kChunkHeaderBytes + kLongest) return std::nullopt;
+    const std::string_view name = asText(webp.subspan(kHeaderBytes, 4));
+    const ByteSpan data = webp.subspan(kHeaderBytes + kChunkHeaderBytes);
+    // VP8X: one less than the canvas, 24 bits each, after flags. VP8: 14 bits each after the tag and start code of its
+    // key frame (RFC 6386, 9.1). VP8L: one less, 14 bits each, after a byte of signature.
+    if (name == "VP8X") return WebpSize{readNumber(data.subspan(4), 3) + 1, readNumber(data.subspan(7), 3) + 1};
+    if (name == "VP8 ")
+        return WebpSize{readNumber(data.subspan(6), 2) & 0x3FFFu, readNumber(data.subspan(8), 2) & 0x3FFFu};
+    const std::uint32_t bits = readNumber(data.subspan(1), 4);
+    if (name == "VP8L") return WebpSize{(bits & 0x3FFFu) + 1, ((bits >> 14) & 0x3FFFu) + 1};
+    return std::nullopt;
+}
+
 Bytes withoutAlpha(ByteSpan webp) {
     Bytes result(webp.begin(), webp.end());
     std::span<std::uint8_t> rest(result);
     rest = rest.subspan(std::min(kHeaderBytes, rest.size()));
     while (rest.size() >= kChunkHeaderBytes) {
         const std::span<std::uint8_t> data = rest.subspan(kChunkHeaderBytes);
-        const std::size_t length = std::min(readLength(rest.subspan(4)), data.size());
+        const std::size_t length = std::min(std::size_t{readNumber(rest.subspan(4), 4)}, data.size());
         removeAlpha(rest.first(4), data.first(length));
         rest = data.subspan(std::min(length + length % 2, data.size())); // chunks start at even bytes
     }

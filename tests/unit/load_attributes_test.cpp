@@ -114,6 +114,13 @@ TEST_F(LoadAttributesTest, TangentsAreReadForNormalMapsAlone) {
     EXPECT_TRUE(load(document_).warnings.empty()); // as far from unit as rounding brings them
 }
 
+TEST_F(LoadAttributesTest, NormalsThatAreNotUnitArePutRight) {
+    set("NORMAL", bytesOf<float>({0, 1.001f, 0, 3, 0, 4, 0, 0, 0}), vectors(5126, 3));
+    const Scene scene = load(document_);
+    EXPECT_EQ(scene.meshes.at(0).normals, (std::vector<Vec3f>{{0, 1.001f, 0}, {0.6f, 0, 0.8f}, {0, 0, 0}}));
+    EXPECT_TRUE(mentions(scene.warnings, "/meshes/0/primitives/0: normals that are not of length 1 are put right"));
+}
+
 TEST_F(LoadAttributesTest, TangentsThatAreNotUnitArePutRight) {
     setNormals();
     useNormalMap();

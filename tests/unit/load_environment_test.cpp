@@ -89,12 +89,58 @@ TEST_F(LoadEnvironmentTest, OtherFilesAreRefused) {
     EXPECT_NE(failure(folder_ / "no.exr").find("does not exist"), std::string::npos);
     EXPECT_NE(failure(folder_).find("this is a directory"), std::string::npos);
     std::ofstream(folder_ / "text.exr") << "hello";
-    EXPECT_NE(failure(folder_ / "text.exr").find("not an image that can be read"), std::string::npos);
+    EXPECT_NE(failure(folder_ / "text.exr").find("neither Radiance .hdr nor OpenEXR"), std::string::npos);
+    std::ofstream(folder_ / "start.exr") << "\x76\x2F\x31\x01";
+    EXPECT_NE(failure(folder_ / "start.exr").find("header is cut short or damaged"), std::string::npos);
     const OIIO::ImageSpec bytes(1, 1, 3, OIIO::TypeDesc::UINT8);
-    EXPECT_NE(failure(write("a.png", bytes, {1, 1, 1})).find("texels are integers"), std::string::npos);
+    EXPECT_NE(failure(write("a.png", bytes, {1, 1, 1})).find("neither Radiance"), std::string::npos);
+    const OIIO::ImageSpec integers(1, 1, 3, OIIO::TypeDesc::UINT32);
+    EXPECT_NE(failure(write("a.exr", integers, {1, 1, 1})).find("texels are integers"), std::string::npos);
     OIIO::ImageSpec cropped = sized(2, 1, 3);
     cropped.full_width = 4;
     EXPECT_NE(failure(write("b.exr", cropped, std::vector<float>(6, 1.0f))).find("data window"), std::string::npos);
+}
+
+/// An OpenEXR file that is all header.
+class Header {
+public:
+    Header& add(const std::string& name, const std::string& type, const std::string& value) {
+        return claim(name, type, static_cast<std::int32_t>(value.size()), value);
+    }
+    Header& claim(const std::string& name, const std::string& type, std::int32_t size, const std::string& value) {
+        bytes_ += name + '\0' + type + '\0' + integers({size}) + value;
+        return *this;
+    }
+    static std::string integers(const std::vector<std::int32_t>& values) {
+        return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(std::int32_t)};
+    }
+    [[nodiscard]] std::string bytes() const { return bytes_ + '\0'; }
+
+private:
+    std::string bytes_ = "\x76\x2F\x31\x01" + integers({2});
+};
+
+TEST_F(LoadEnvironmentTest, HeadersOfOpenExrClaimNoMoreThanTheirBytes) {
+    const auto message = [&](const Header& header) {
+        std::ofstream(folder_ / "a.exr", std::ios::binary) << header.bytes() << std::string(100, '\0');
+        return failure(folder_ / "a.exr");
+    };
+    const auto expect = [&](const Header& header, const char* part) {
+        const std::string text = message(header);
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    expect(Header().claim("note", "madeUp", 846753634, ""), "header is cut short or damaged");
+    expect(Header().claim("note", "madeUp", -1, ""), "header is cut short or damaged");
+    expect(Header().add("dataWindow", "box2i", "short"), "header is cut short or damaged");
+    expect(Header().add("dataWindow", "text", std::string(16, '\0')), "header is cut short or damaged");
+    expect(Header().add("channels", "chlist", "R"), "header is cut short or damaged");
+    const std::string large = Header::integers({0, 0, 16383, 16383});
+    expect(Header().add("dataWindow", "box2i", large), "it claims 16384 x 16384 texels");
+    const std::string tall = Header::integers({0, 0, 0, 1 << 18});
+    expect(Header().add("dataWindow", "box2i", tall), "it claims 1 x 262145 texels");
+    expect(Header().add("dataWindow", "box2i", Header::integers({5, 5, 1, 1})), "not an image that can be read");
+    expect(Header().add("preview", "preview", Header::integers({1 << 15, 1 << 14})), "not an image that can be read");
+    expect(Header().add("texts", "stringvector", Header::integers({1 << 30})), "not an image that can be read");
 }
 
 TEST_F(LoadEnvironmentTest, TruncatedAndHugeFilesAreRefused) {

@@ -217,5 +217,30 @@ TEST_F(LoadImageTest, HeadersThatClaimTooMuchAreRefusedBeforeMemoryIsTaken) {
     EXPECT_MENTIONS(failure(document), "/images/0: it claims 16384 x 16384");
 }
 
+/// OpenImageIO takes memory for all of a WebP as soon as it opens it.
+TEST_F(LoadImageTest, HeadersOfWebpAreReadBeforeTheirDecoderIs) {
+    const auto webp = [](const std::string& name, const std::string& data) {
+        const std::string chunk = name + word(static_cast<std::uint32_t>(data.size())) + data;
+        return "RIFF" + word(static_cast<std::uint32_t>(4 + chunk.size())) + "WEBP" + chunk;
+    };
+    const std::string canvas = std::string(4, '\0') + "\xFF\xFF\xFF" + "\x03" + std::string(20, '\0');
+    EXPECT_MENTIONS(failureOf(webp("VP8X", canvas)), "16777216 x 4 texels: at most 16384 a side");
+    const std::string frame = std::string("\x30\x01\x00\x9D\x01\x2A", 6) + std::string(20, '\0');
+    EXPECT_MENTIONS(failureOf(webp("VP8 ", frame)), "0 x 0 texels: no picture");
+    const std::string lossless = "\x2F\xFF\x3F" + std::string(20, '\0');
+    LoadLimits limits;
+    limits.imageSide = 16383;
+    const std::string document = texturedDocument({{"uri", dataUri(webp("VP8L", lossless))}}).dump();
+    const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(document.data()), document.size());
+    try {
+        (void)loadSceneFromBytes(bytes, folder_ / "scene.gltf", limits);
+        ADD_FAILURE() << "is loaded beyond its limits";
+    } catch (const Error& error) {
+        EXPECT_MENTIONS(error.what(), "scene.gltf: /images/0: it claims 16384 x 1 texels: at most 16383 a side");
+    }
+    EXPECT_MENTIONS(failureOf(webp("ALPH", lossless)), "its data is cut short or damaged");
+    EXPECT_MENTIONS(failureOf(webp("VP8L", "")), "its data is cut short or damaged");
+}
+
 } // namespace
 } // namespace isolux::load_test

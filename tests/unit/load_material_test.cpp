@@ -10,6 +10,8 @@ protected:
     static json documentOf(const json& material) {
         json document = triangleDocument();
         document["materials"] = json::array({material});
+        if (const auto extensions = material.find("extensions"); extensions != material.end())
+            for (const auto& item : extensions->items()) document["extensionsUsed"].push_back(item.key());
         primitiveOf(document)["material"] = 0;
         return document;
     }

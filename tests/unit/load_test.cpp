@@ -209,6 +209,24 @@ TEST_F(LoadTest, ContentHashCoversBuffers) {
     EXPECT_NE(load(document).contentHash, hash);
 }
 
+TEST_F(LoadTest, WhatNothingReadsIsWarnedOfWhereItStands) {
+    json document = triangleDocument();
+    document["extensionsUsed"] = {"KHR_materials_ior", "EXT_made_up", "KHR_materials_ior"};
+    document["nodes"][0]["extensions"] = {{"KHR_materials_ior", json::object()}, {"EXT_other", json::object()}};
+    document["materials"] = {{{"extensions", {{"KHR_materials_volume", json::object()}}}}};
+    document["extensions"]["EXT_made_up"] = {{"rules of its own", json::array()}};
+    document["extras"] = {{"also", json::array()}};
+    document["samplers"] = json::array();
+    EXPECT_EQ(load(document).warnings,
+              (std::vector<std::string>{
+                  "/extensionsUsed/2: KHR_materials_ior is listed twice",
+                  "/extensionsUsed/1: EXT_made_up is not supported; ignored",
+                  "/materials/0/extensions: KHR_materials_volume is not among extensionsUsed; read all the same",
+                  "/nodes/0/extensions: EXT_other is not among extensionsUsed; ignored",
+                  "/nodes/0/extensions: KHR_materials_ior has no meaning here; ignored",
+                  "/samplers: is an empty array, which glTF forbids; ignored"}));
+}
+
 TEST_F(LoadTest, WhatIsNotSupportedIsNamedOnce) {
     json document = triangleDocument();
     json& primitives = document["meshes"][0]["primitives"];
@@ -222,11 +240,11 @@ TEST_F(LoadTest, WhatIsNotSupportedIsNamedOnce) {
     const Scene scene = load(document);
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.cameras.size(), 1u);
-    EXPECT_EQ(scene.warnings.size(), 6u);
-    for (const char* text :
-         {"/extensionsUsed/0: EXT_made_up is not supported",
-          "/meshes/0/primitives/1: points and lines are not supported; left out (and 2 more)",
-          "vertex colours beyond COLOR_0", "morph targets", "/animations: animations", "/nodes/0/skin: skins"})
+    EXPECT_EQ(scene.warnings.size(), 7u);
+    for (const char* text : {"/extensionsUsed/0: EXT_made_up is not supported",
+                             "/meshes/0/primitives/1: points and lines are not supported; left out (and 2 more)",
+                             "vertex colours beyond COLOR_0", "morph targets", "/animations: animations",
+                             "/nodes/0/skin: skins", "/animations/0/channels: is an empty array"})
         EXPECT_TRUE(mentions(scene.warnings, text)) << text;
 }
 
