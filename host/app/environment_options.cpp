@@ -137,7 +137,7 @@ void addEnvironmentOptions(CLI::App& command, EnvironmentOptions& options) {
     command.add_option("--environment", options.source)
         ->group(kGroup)
         ->description("Instead of the scene's: constant radiance, R,G,B or one number; an equirectangular image file "
-                      "(.hdr, .exr, ...); or none (default: the scene's; 1 if it has no light at all)");
+                      "(.hdr or .exr); or none (default: the scene's; 1 if it has no light at all)");
     command.add_option("--environment-rotation", options.rotation)
         ->group(kGroup)
         ->type_name("DEGREES")
