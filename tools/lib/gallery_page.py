@@ -118,8 +118,8 @@ def verification_text(entry):
         return found["error"]
     bias = found["relativeBias"] and found["relativeBias"][1]
     mean = "" if bias is None else f", mean {bias:+.1e}".replace("-", "−")
-    apart = [plural(found[key], word) for key, word in
-             (("otherBranch", "other branch"), ("rounding", "rounding"), ("unexplained", "unexplained")) if found[key]]
+    apart = [f"{found[key]:,} {word}" for key, word in
+             (("otherBranch", "on another branch"), ("rounding", "by rounding"), ("unexplained", "unexplained")) if found[key]]
     inside = f"{found['withinTolerance']:,} of {plural(found['litPixels'], 'pixel')} alike"
     return f"against the CPU: {', '.join([inside, *apart])}{mean}"
 

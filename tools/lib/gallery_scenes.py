@@ -49,6 +49,12 @@ def fitting_size(size, width):
     return size
 
 
+def has_shape(size, aspect_ratio):
+    """Whether a camera of this aspect ratio, if it has one, fills an image of this size; a pixel more or less is none."""
+    width, height = size
+    return aspect_ratio is None or abs(width - aspect_ratio * height) <= max(1, aspect_ratio)
+
+
 def scenes_in(folder, references):
     for path in sorted(filter(is_scene, folder.rglob("*"))):
         name = short_name(path, folder)

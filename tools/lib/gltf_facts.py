@@ -1,4 +1,4 @@
-"""What a glTF file says of itself without being loaded: its size and the files it names."""
+"""What a glTF file says of itself without being loaded: its size, its first camera's shape, the files it names."""
 
 import json
 import pathlib
@@ -27,6 +27,12 @@ def mesh_triangles(document, index):
     return sum(primitive_triangles(document, primitive) for primitive in document["meshes"][index]["primitives"])
 
 
+def aspect_ratio(document):
+    """Of the first camera, if it is a perspective one that says so."""
+    cameras = document.get("cameras", [])
+    return cameras[0].get("perspective", {}).get("aspectRatio") if cameras else None
+
+
 def describe(path):
     document = read_document(path)
     nodes = document.get("nodes", [])
@@ -36,13 +42,14 @@ def describe(path):
     return {
         "triangles": sum(mesh_triangles(document, mesh) for mesh in meshes),
         "spheres": len(spheres),
+        "aspectRatio": aspect_ratio(document),
         "files": [pathlib.Path(path).parent / urllib.parse.unquote(uri) for uri in named if not uri.startswith("data:")],
     }
 
 
 def facts(path):
-    """Triangles and spheres over all nodes, and the files named; the counts are None in a file that is not sound."""
+    """Triangles and spheres over all nodes, and the files named; all but those are None in a file that is not sound."""
     try:
         return describe(path)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, struct.error):
-        return {"triangles": None, "spheres": None, "files": []}
+        return {"triangles": None, "spheres": None, "aspectRatio": None, "files": []}

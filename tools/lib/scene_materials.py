@@ -5,7 +5,7 @@ from scene_gltf import FLOAT, Gltf
 from scene_shapes import about_y, box_quads, geodesic, looking
 
 SKY = [0.18, 0.22, 0.3]
-REPEAT, NEAREST, LINEAR = 10497, 9728, 9729
+REPEAT, LINEAR = 10497, 9729
 WHOLE = [(0, 1), (1, 1), (1, 0), (0, 0)]  # an image over a quadrilateral, its lower left corner first
 
 
@@ -54,7 +54,7 @@ def add_boxes(gltf):
 
 def add_room(gltf):
     """A tiled floor, a wall, a sign that gives light by an image, a lamp out of sight."""
-    tiles = gltf.texture("tiles", images.tiles(64), magFilter=NEAREST, minFilter=NEAREST, wrapS=REPEAT, wrapT=REPEAT)
+    tiles = gltf.texture("tiles", images.tiles(64), magFilter=LINEAR, minFilter=LINEAR, wrapS=REPEAT, wrapT=REPEAT)
     floor = gltf.surface("tiles", 0.0, 0.3, baseColorTexture=tiles)
     ground = [[(-4, 0, 3), (4, 0, 3), (4, 0, -1.2), (-4, 0, -1.2)]]
     gltf.node("floor", mesh=gltf.quads("floor", floor, ground, [(0, 4.2), (8, 4.2), (8, 0), (0, 0)]))
