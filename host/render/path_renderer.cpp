@@ -165,7 +165,7 @@ void PathRenderer::createPathBuffers() {
     createOptionalBuffers(lanes);
     completion_ =
         std::make_unique<Buffer>(device_, sizeof(shared::CompletionRecord), kStorage, BufferAccess::hostReads);
-    parameterBuffer_ = std::make_unique<Buffer>(device_, sizeof(parameters_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+    parameterBuffer_ = std::make_unique<Buffer>(device_, sizeof(parameters_), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                                 BufferAccess::hostWrites);
 }
 

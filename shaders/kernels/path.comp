@@ -138,7 +138,7 @@ void clearAovs() {
 void goOnOrEnd() {
     uint ending = path.ending & kEndingMask;
     uint lobe = path.ending >> kLobeShift;
-    if (!kLambertianOnly && lobe != 0u) recordEvent(lobe);
+    if (!kLambertianOnly && lobe != 0u && ending != kEnds) recordEvent(lobe);
     if (ending == kGoesOn) {
         if (kGlass && (path.ending & kCrossesBit) != 0u) {
             path.ray.origin = path.beyond;

@@ -9,7 +9,7 @@
 
 layout(constant_id = 17) const bool kLightLoop = false; // several light samples a shading point
 
-layout(set = 0, binding = 8, std140) uniform RenderBuffer { RenderParameters render; };
+layout(set = 0, binding = 8, std140) readonly buffer RenderBuffer { RenderParameters render; };
 layout(set = 0, binding = 9, std430) buffer PathBuffer { PathRecord paths[]; };
 layout(set = 0, binding = 10, std430) buffer FilmBuffer { FilmRecord films[]; };
 layout(set = 0, binding = 11, std430) buffer StackBuffer { uvec2 stacks[]; };
