@@ -3,10 +3,22 @@
 
 #include "film/film.h"
 #include "render/path_renderer.h"
+#include "support/scenes.h"
 
 #include <gtest/gtest.h>
 
 namespace isolux::test {
+
+/// More features than a scene needs: all of them or, on drivers that repeat what another has done, of which one takes
+/// minutes to compile all, every kind of geometry and light.
+[[nodiscard]] inline SceneFeatures moreFeatures(const SceneFeatures& needed) {
+    if (workShare() == 1.0) return {};
+    SceneFeatures more = needed;
+    more.spheres = more.smoothNormals = more.areaLights = more.punctualLights = more.environment = true;
+    more.lights = LightCount::many;
+    more.roulette = Roulette::throughput;
+    return more;
+}
 
 [[nodiscard]] inline Film renderOnDevice(const Device& device, const Scene& scene, const RenderSettings& settings,
                                          const RenderOptions& options = {}) {
