@@ -45,7 +45,7 @@ private:
         MapSlot slot;
     };
 
-    [[nodiscard]] shared::MaterialRecord record(std::size_t material) const;
+    [[nodiscard]] shared::MaterialRecord record(std::size_t index) const;
     [[nodiscard]] std::uint32_t recordOf(std::size_t material, MapSlot slot) const;
     [[nodiscard]] shared::TextureRecord textureRecord(const Use& use, std::uint32_t firstTexel) const;
     [[nodiscard]] bool usesSrgb(bool wide) const;

@@ -121,6 +121,7 @@ public:
     /// In the order of kNamed, then lights and roulette.
     [[nodiscard]] std::vector<FeatureNote> notes() const {
         std::vector<FeatureNote> notes;
+        notes.reserve(kNamed.size() + 2);
         for (const NamedFeature& named : kNamed)
             notes.push_back({std::string(named.name), features_.*named.flag, reasonOf(named.flag)});
         notes.push_back(lights_.lights.size() > 1
