@@ -143,7 +143,8 @@ void visitLeaf(uint item, Query query, RayTransform transform, inout Traversal s
     uint first = item & kLeafFirstMask;
     uint count = ((item & ~kLeafBit) >> kLeafCountShift) + 1u;
     for (uint i = 0u; i < count; ++i) testPrimitive(first + i, query, transform, state);
-    budget -= min(budget, count);
+    // Where surfaces may be cut out, each test may read a texture, whose loop counts too.
+    budget -= min(budget, kCutouts ? 5u * count : count);
     if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
 }
 
@@ -153,6 +154,7 @@ void traverse(Query query, RayTransform transform, inout Traversal state, inout 
         --budget;
         --state.stackCount;
         if (kEveryPrimitive) {
+            if (kCutouts) budget -= min(budget, 4u);
             testPrimitive(state.stackCount, query, transform, state);
             if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
         } else if (stackEntries[state.stackCount] < state.distance) {

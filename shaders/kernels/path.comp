@@ -331,6 +331,7 @@ void advance(inout uint budget) {
     if (kLightLoop) path.point = point;
     if (path.phase == kPhaseLights) takeLightSample(point);
     if (path.phase == kPhaseEnded) endSample();
+    budget -= min(budget, mapIterations());
 }
 
 void startOrResume(uint lane) {

@@ -39,6 +39,18 @@ vec4 mapValue(uint map, MapPoint at, bool srgb) {
     return value;
 }
 
+// Iterations that reading every map of a hit and of a sampled light may take: what the step budget must allow for.
+uint mapIterations() {
+    uint lookups = 0u;
+    if (kBaseColorMaps) lookups += 2u;
+    if (kMetallicRoughnessMaps) lookups += 1u;
+    if (kNormalMaps) lookups += 1u;
+    if (kEmissionMaps) lookups += 2u;
+    if (kTransmissionMaps) lookups += 2u;
+    if (kSpecularMaps) lookups += 2u;
+    return 4u * lookups;
+}
+
 // Base colour and alpha at a point: factor, map, vertex colour.
 vec4 baseColorAt(MaterialRecord material, MapPoint at) {
     vec4 base = material.baseColorAlpha;

@@ -52,14 +52,14 @@ vec4 sampleTexture(TextureRecord record, vec2 uv, bool srgb, uvec2 decoding) {
     vec2 base = floor(s);
     vec2 f = s - base;
     ivec2 i = ivec2(base);
-    uvec2 lower = uvec2(wrapIndex(i.x, size.x, wrapU), wrapIndex(i.y, size.y, wrapV));
-    vec4 value = readTexel(image, lower, srgb, decoding);
-    if (linear) {
-        uvec2 upper = uvec2(wrapIndex(i.x + 1, size.x, wrapU), wrapIndex(i.y + 1, size.y, wrapV));
-        vec4 right = readTexel(image, uvec2(upper.x, lower.y), srgb, decoding);
-        vec4 below = readTexel(image, uvec2(lower.x, upper.y), srgb, decoding);
-        vec4 across = readTexel(image, upper, srgb, decoding);
-        value = mix(mix(value, right, f.x), mix(below, across, f.x), f.y);
+    // A loop, for drivers that take minutes to compile four copies of what reads a texel.
+    uint corners = linear ? 4u : 1u;
+    vec4 value = vec4(0.0);
+    for (uint corner = 0u; corner < corners; ++corner) {
+        ivec2 at = i + ivec2(corner & 1u, corner >> 1);
+        vec2 weights = mix(1.0 - f, f, vec2(corner & 1u, corner >> 1));
+        uvec2 texel = uvec2(wrapIndex(at.x, size.x, wrapU), wrapIndex(at.y, size.y, wrapV));
+        value += (linear ? weights.x * weights.y : 1.0) * readTexel(image, texel, srgb, decoding);
     }
     return value;
 }
