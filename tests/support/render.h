@@ -10,11 +10,12 @@
 namespace isolux::test {
 
 /// More features than a scene needs: all of them or, on drivers that repeat what another has done, of which one takes
-/// minutes to compile all, every kind of geometry and light.
+/// minutes to compile all, every kind of geometry and light, and a little of what surfaces may have.
 [[nodiscard]] inline SceneFeatures moreFeatures(const SceneFeatures& needed) {
     if (workShare() == 1.0) return {};
     SceneFeatures more = needed;
     more.spheres = more.smoothNormals = more.areaLights = more.punctualLights = more.environment = true;
+    more.vertexColors = more.unlit = more.alphaMask = true;
     more.lights = LightCount::many;
     more.roulette = Roulette::throughput;
     return more;
