@@ -1,4 +1,4 @@
-"""Style and script of the study's page."""
+"""Style and script of the pages of tools/study and tools/report."""
 
 STYLE = """
 :root { color-scheme: light dark; --back: #fbfbfa; --card: #ffffff; --text: #1c1d1f; --soft: #5d6167; --line: #dcdee1;
