@@ -26,9 +26,10 @@ def choice(name, items, chosen):
     return f'<label>{name} <select class="{name}">{options}</select></label>'
 
 
-def comparator(items):
-    """Two of the images over each other, with a slider between them; shown where the script runs, which fills it."""
-    choices = choice("left", items, 0) + choice("right", items, len(items) - 1)
+def comparator(items, right=None):
+    """Two of the images over each other, with a slider between them; shown where the script runs, which fills it. The right
+    one is the last, or that of the number `right`."""
+    choices = choice("left", items, 0) + choice("right", items, len(items) - 1 if right is None else right)
     return (f'<div class="compare" hidden><div class="choices">{choices}</div>'
             '<div class="stage"><img class="under" alt=""><img class="over" alt=""><i></i></div>'
             '<label class="slide">boundary <input type="range" min="0" max="100" value="50" step="1"></label></div>')

@@ -14,6 +14,7 @@ CAPTIONS = {
     "error-samples": ("Error against samples", "Dash-dotted: slope −½, as of independent samples. What differs here differs in noise, not in speed."),
     "bias-time": ("Bias against time", "Of the mean luminance, relative to the reference, with 95 % intervals: they should hold 0. Linear about 0, "
                   "logarithmic beyond. Shaded: how well the reference's own mean is known. Points are moved a little sideways."),
+    "estimate-samples": ("The renderer's estimate of its error", "Over the true one: 1 is right, below 1 promises too much. Shaded: 10 % about 1."),
 }
 
 EXPLANATION = (
@@ -52,6 +53,14 @@ def compared(run, images):
     return [{"label": label} for name, label in found if name and name not in missing]
 
 
+def first_shown(run, choices):
+    """The place of the best variant's image, or of what follows the reference."""
+    error = run.data["errors"][0] if run.data["errors"] else None
+    winner = best(run, error) if error else None
+    name = run.variants[winner]["name"] if winner is not None else None
+    return next((place for place, item in enumerate(choices) if item["label"] == name), 1)
+
+
 def strip(run):
     images = run.data["images"]
     if not images or not images["variants"]:
@@ -61,7 +70,7 @@ def strip(run):
         reference = (f'<figure>{picture(run, images["reference"], "reference", "")}<figcaption><b>reference</b></figcaption></figure>')
     figures = reference + "".join(image_figure(run, entry) for entry in images["variants"] if entry)
     choices = compared(run, images)
-    slider = comparator(choices) if len(choices) > 1 else ""
+    slider = comparator(choices, first_shown(run, choices)) if len(choices) > 1 else ""
     seconds = images["equalTimeSeconds"]
     title = f"At equal time: {short_seconds(seconds)}" if seconds is not None else "Images"
     return (f'<div class="block" id="{run.slug}-images"><h3>{text(title)}</h3><p>The checkpoint of each variant nearest to that time; below it the '
@@ -121,8 +130,8 @@ def parts(run):
     return "".join(f'<a href="#{run.slug}-{name}">{label}</a>' for name, label in found.items() if label)
 
 
-def section(run, drawn):
-    return (f'<section id="{run.slug}"><h2>{text(run.title)}</h2>{sentences(run)}{warning_box(run)}<nav aria-label="{text(run.title)}">{parts(run)}</nav>'
+def section(run, drawn, heading):
+    return (f'<section id="{run.slug}"><h2>{text(heading)}</h2>{sentences(run)}{warning_box(run)}<nav aria-label="{text(run.title)}">{parts(run)}</nav>'
             f"{plots(run, drawn)}{times(run)}{rates(run)}{ratios(run)}{strip(run)}{calibration(run)}{checkpoints(run)}"
             f"{fact_list(run)}{count_list(run)}</section>")
 
@@ -165,11 +174,16 @@ def machine(runs):
     return "".join(f"<p>{text(line)}</p>" for line in found if line)
 
 
+def warned(run):
+    return ' <b class="warned">(with warnings)</b>' if any(warnings(run)) else ""
+
+
 def top(runs):
     """Of several runs a sentence each, then where to find them."""
     if len(runs) == 1:
         return ""
-    lines = "".join(f'<li><a href="#{run.slug}">{text(run.title)}</a>: {text(headlines(run, 1)[0])}</li>' for run in runs)
+    lines = "".join(f'<li><a href="#{run.slug}">{text(run.title)}</a>: {text(headlines(run)[0])}{warned(run)}</li>'
+                    for run in runs)
     links = "".join(f'<a href="#{run.slug}">{text(run.title)}</a>' for run in runs)
     return f'<ul class="more">{lines}</ul><nav aria-label="Scenes"><a href="#overview">Overview</a>{links}</nav>'
 
@@ -177,7 +191,7 @@ def top(runs):
 def page(runs, drawn):
     """`drawn`: of each run the plots' SVG by name."""
     title = f"Error against run time: {runs[0].title}" if len(runs) == 1 else f"Error against run time: {len(runs)} runs"
-    body = "".join(section(run, shown) for run, shown in zip(runs, drawn))
+    body = "".join(section(run, shown, run.title if len(runs) > 1 else "Who is soonest") for run, shown in zip(runs, drawn))
     return f"""<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{text(title)}</title><style>{page_style.STYLE}{report_style.STYLE}</style></head><body>

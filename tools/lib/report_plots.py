@@ -239,7 +239,38 @@ def bias_time(run):
     return drawn
 
 
-PLOTS = {"error-time": error_time, "error-samples": error_samples, "bias-time": bias_time}
+def estimates(variant):
+    """Arrays samples, low, estimate, high of the estimated over the true error."""
+    found = [(point["samplesPerPixel"], (point["calibration"] or {}).get("estimateOverError")) for point in variant["checkpoints"]]
+    rows = [(x, *ratio) for x, ratio in found if ratio and None not in ratio]
+    return numpy.array(rows, dtype=float).reshape(-1, 4).T
+
+
+def draw_estimate(axes, place, variant, rows):
+    x, low, estimate, high = rows
+    axes.fill_between(x, low, high, color=colour(place), alpha=0.22, linewidth=0, gid=f"{group(place)}-band")
+    axes.plot(x, estimate, color=colour(place), marker=marker(place), linewidth=1.8, gid=f"{group(place)}-ratio", label=variant["name"])
+
+
+def estimate_samples(run):
+    """Nothing where no checkpoint has a calibration."""
+    found = [estimates(variant) for variant in run.variants]
+    x = [float(value) for rows in found for value in rows[0]]
+    if not x:
+        return None
+    drawn, axes = figure("samples a pixel", "estimated over true error")
+    left, right = limits(x, 1.3)
+    values = [float(value) for rows in found for value in rows[2]]
+    axes.set(xscale="log", xlim=(left, right), ylim=(min(0.6, 0.9 * min(values)), max(1.4, 1.1 * max(values))))
+    set_axis(axes.xaxis, left, right, plain_number)
+    axes.axhspan(0.9, 1.1, color=SHADE, linewidth=0)
+    axes.axhline(1, color=INK, linewidth=1)
+    for place, (variant, rows) in enumerate(zip(run.variants, found)):
+        draw_estimate(axes, place, variant, rows)
+    return drawn
+
+
+PLOTS = {"error-time": error_time, "error-samples": error_samples, "bias-time": bias_time, "estimate-samples": estimate_samples}
 
 
 def add_legend(drawn):

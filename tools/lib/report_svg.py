@@ -71,6 +71,8 @@ def draw(run, folder):
     with matplotlib.rc_context(STYLE):
         for name, plot in PLOTS.items():
             drawn = plot(run)
+            if drawn is None:
+                continue
             found[name] = inline(svg_text(drawn), f"{run.slug}-{name}", plot_label(run, name))
             standalone(drawn, run, folder / f"{run.slug}-{name}")
             pyplot.close(drawn)

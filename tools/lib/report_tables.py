@@ -18,6 +18,11 @@ def reason_of(variant, error):
     return next((found["reason"] or "" for found in variant["timeTo"] if found["error"] == error), "")
 
 
+def noted(ends, extrapolated):
+    """The interval, and on a line of its own that it is extrapolated."""
+    return "\n".join(filter(None, (ends, EXTRAPOLATED if extrapolated else "")))
+
+
 def time_cell(variant, error, is_best):
     found = time_to(variant, error)
     if not found:
@@ -25,8 +30,7 @@ def time_cell(variant, error, is_best):
     low, seconds, high = found["seconds"]
     ends = "" if None in (low, high) else f"{clock(low)} to {clock(high)}"
     kinds = " ".join(filter(None, ("best" if is_best else "", EXTRAPOLATED if found["extrapolated"] else "")))
-    note = f"{ends}, {EXTRAPOLATED}" if found["extrapolated"] and ends else ends or (EXTRAPOLATED if found["extrapolated"] else "")
-    return cell(clock(seconds), note, kinds)
+    return cell(clock(seconds), noted(ends, found["extrapolated"]), kinds)
 
 
 def times(run):
@@ -85,15 +89,14 @@ def ratio_cell(found, extrapolated):
     low, estimate, high = found
     kind = "gain" if low is not None and low > 1 else "loss" if high is not None and high < 1 else ""
     ends = "" if None in (low, high) else f"{short(low)} to {short(high)}"
-    note = ", ".join(filter(None, (ends, EXTRAPOLATED if extrapolated else "")))
-    return cell(f"×{short(estimate)}", note, " ".join(filter(None, (kind, EXTRAPOLATED if extrapolated else ""))))
+    return cell(f"×{short(estimate)}", noted(ends, extrapolated), " ".join(filter(None, (kind, EXTRAPOLATED if extrapolated else ""))))
 
 
 def matrix(run, error):
     ratios, names = ratios_at(run, error), [variant["name"] for variant in run.variants]
     rows = [(shown, [cell("", "", "self") if other == variant["name"] else ratio_cell(*directed(ratios, variant["name"], other))
                      for other in names]) for _, variant, shown in named(run)]
-    return f"<h4>To {plain_percent(error)}</h4>" + table(f"Ratios at {plain_percent(error)}", ["row ÷ column"] + names, rows)
+    return f"<h4>To {plain_percent(error)}</h4>" + table(f"Ratios at {plain_percent(error)}", ["row sooner than"] + names, rows)
 
 
 def ratio_list(run, error):
@@ -119,13 +122,19 @@ def marked_cell(figure, below, side):
     return cell(figure + sign, below, "outside" if side else "")
 
 
-def coverage_cell(coverage):
+def mean_cell(coverage):
+    """With its counts: they are few."""
+    if not coverage or not coverage["total"]:
+        return empty_cell()
+    return coverage_cell(coverage, f"{short(coverage['inside'])} of {short(coverage['total'])}")
+
+
+def coverage_cell(coverage, counted=""):
     if not coverage or not coverage["total"]:
         return empty_cell()
     share = coverage["share"] or [None, coverage["inside"] / coverage["total"], None]
     ends = "" if None in share else f"{short_percent(share[0])} to {short_percent(share[2])}"
-    counted = f"{short(coverage['inside'])} of {short(coverage['total'])}"
-    return marked_cell(short_percent(share[1]), f"{counted}{': ' if ends else ''}{ends}", outside(coverage["share"], COVERAGE_LIMITS))
+    return marked_cell(short_percent(share[1]), "\n".join(filter(None, (ends, counted))), outside(coverage["share"], COVERAGE_LIMITS))
 
 
 def estimate_cell(found):
@@ -145,7 +154,7 @@ def pixel_heads(points):
 def calibration_row(point, fifths):
     found = point["calibration"]
     pixels = (found["pixels"] or []) + [None] * fifths
-    return ([cell(short(point["samplesPerPixel"]))] + [coverage_cell(found["meanLuminance"])]
+    return ([cell(short(point["samplesPerPixel"]))] + [mean_cell(found["meanLuminance"])]
             + [coverage_cell(part) for part in pixels[:fifths]] + [estimate_cell(found["estimateOverError"])])
 
 
