@@ -25,7 +25,7 @@ th:first-child, td:first-child { text-align: left; position: sticky; left: 0; ba
 th:first-child { background: var(--tint); }
 .summary td { white-space: normal; } .summary td:last-child, .summary th:last-child { text-align: left; }
 .summary td:first-child { position: static; }
-.pictures { display: grid; gap: 1rem; align-items: start; }
+.pictures { display: grid; gap: 1rem; align-items: start; grid-template-columns: minmax(0, 1fr); }
 .sheet { display: grid; gap: .75rem; grid-template-columns: repeat(auto-fill, minmax(min(100%, 9.5rem), 1fr)); }
 figure { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; overflow: hidden; }
 img { display: block; width: 100%; image-rendering: pixelated; background: #000; }

@@ -166,12 +166,13 @@ def overview(runs):
 
 
 def machine(runs):
-    """One line where all runs agree, or each of them."""
-    found = dict.fromkeys(" · ".join(filter(None, (run.data["device"], f"driver {known['Driver']}" if known["Driver"] else None,
-                                                   f"Isolux {known['Isolux']}" if known["Isolux"] else None,
-                                                   known["Image"])))
-                          for run in runs for known in [facts(run)])
-    return "".join(f"<p>{text(line)}</p>" for line in found if line)
+    """A line for each machine and size that runs were measured on."""
+    lines = {}
+    for known in filter(lambda known: known["Device"], map(facts, runs)):
+        named = [f"{prefix}{known[name]}" for prefix, name in (("", "Device"), ("driver ", "Driver"), ("Isolux ", "Isolux"), ("", "Image"))
+                 if known[name]]
+        lines[" · ".join(named)] = True
+    return "".join(f"<p>{text(line)}</p>" for line in lines)
 
 
 def warned(run):

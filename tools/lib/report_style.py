@@ -34,7 +34,8 @@ td.none small { white-space: normal; min-width: 8rem; } td.none { color: var(--s
 .strip .gap { aspect-ratio: 1; display: grid; place-items: center; background: var(--tint); color: var(--soft); font-size: .85rem; }
 section:only-of-type > h2 { border: 0; margin: 0; padding: 0; }
 section > .facts summary, details.block > summary { font-size: .95rem; } details.block { font-size: inherit; }
-@media (max-width: 40rem) { dl { grid-template-columns: 1fr; gap: 0; } dd { margin: 0 0 .45rem; } .headline { font-size: 1.05rem; }
+@media (max-width: 40rem) { svg.plot text { font-size: 11.5px !important; }
+  dl { grid-template-columns: 1fr; gap: 0; } dd { margin: 0 0 .45rem; } .headline { font-size: 1.05rem; }
   .variant { flex-wrap: wrap; gap: .1rem .4rem; } th[scope=row] { max-width: 7.5rem; } body { padding: 1rem .75rem 3rem; } }
 @media print { .keys, nav, .compare { display: none; } .block, figure { break-inside: avoid; } }
 """
