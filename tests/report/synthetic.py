@@ -20,8 +20,9 @@ ERRORS = [0.05, 0.01]
 REFERENCE_ERROR = 0.004
 
 # Name, options, relative RMSE of one sample, seconds a sample, exponent of MSE over samples, floor of relative RMSE.
-PLAIN = [("hemisphere", "--light-sampling none", 1.9, 0.006, 1.0, 0.0), ("light", "--light-sampling light", 0.62, 0.011, 1.0, 0.0),
-         ("mis", "--light-sampling mis", 0.5, 0.013, 1.0, 0.0), ("mis-sobol", "--light-sampling mis --sampler sobol", 0.5, 0.0135, 1.25, 0.0),
+PLAIN = [("hemisphere", "--light-sampling none", 1.9, 0.006, 1.0, 0.0),
+         ("light", "--light-sampling light", 0.62, 0.011, 1.0, 0.0), ("mis", "--light-sampling mis", 0.5, 0.013, 1.0, 0.0),
+         ("mis-sobol", "--light-sampling mis --pixel-sampler sobol", 0.5, 0.0135, 1.25, 0.0),
          ("adaptive", "--light-sampling mis --adaptive 0.02", 0.42, 0.014, 1.0, 0.0)]
 BIASED = ("clamped", "--light-sampling mis --clamp 4", 0.3, 0.013, 1.0, 0.03)
 
@@ -59,9 +60,11 @@ def checkpoint(generator, variant, samples):
     scale = 0.36  # of the mean, squared
     return {"samplesPerPixel": samples, "raysPerPixel": 5.5 * samples, "wallSeconds": seconds, "deviceSeconds": 0.95 * seconds,
             "mse": around(generator, mse * scale, noise), "relMse": around(generator, 1.3 * mse, noise),
-            "relMseTrimmed": around(generator, 0.9 * mse, noise), "mae": around(generator, 0.6 * math.sqrt(mse * scale), noise / 2),
+            "relMseTrimmed": around(generator, 0.9 * mse, noise),
+            "mae": around(generator, 0.6 * math.sqrt(mse * scale), noise / 2),
             "flip": around(generator, min(0.9, 1.4 * math.sqrt(mse)), noise / 4),
-            "bias": [-floor + 0.15 * math.sqrt(mse / SEEDS) * part for part in (generator.uniform(-3, -1), 0.1, generator.uniform(1, 3))],
+            "bias": [-floor + 0.15 * math.sqrt(mse / SEEDS) * part
+                     for part in (generator.uniform(-3, -1), 0.1, generator.uniform(1, 3))],
             "biasSquared": [floor**2 * scale - 1e-5, floor**2 * scale, floor**2 * scale + 1e-5], "relativeRmse": rmse,
             "estimate": around(generator, math.sqrt(mse - floor**2) * 0.97, noise / 2),
             "calibration": calibration(generator, floor)}
@@ -115,14 +118,17 @@ def picture(seed, noise):
     """A sphere above a floor, in grain."""
     def texel(x, y):
         u, v = (x + 0.5) / SIZE * 2 - 1, (y + 0.5) / SIZE * 2 - 1
-        lit = max(0.0, 0.9 * math.sqrt(max(0.0, 0.4 - u * u - v * v)) - 0.4 * u - 0.4 * v) if u * u + v * v < 0.4 else 0.35 + 0.3 * v
+        depth = 0.4 - u * u - v * v
+        lit = max(0.0, 0.9 * math.sqrt(depth) - 0.4 * u - 0.4 * v) if depth > 0 else 0.35 + 0.3 * v
         shade = lit * (1 + noise * (grain(x + 97 * seed, y + 31 * seed) - 0.5))
         return tuple(min(255, max(0, int(255 * part * shade))) for part in (1.0, 0.85, 0.7))
     return png(SIZE, SIZE, RGB, texel)
 
 
 def flip_map(seed, noise):
-    return png(SIZE, SIZE, RGB, lambda x, y: (min(255, int(255 * noise * grain(x + seed, y))), int(40 * noise), int(90 * noise)))
+    def texel(x, y):
+        return min(255, int(255 * noise * grain(x + seed, y))), int(40 * noise), int(90 * noise)
+    return png(SIZE, SIZE, RGB, texel)
 
 
 def write_images(folder, summaries, equal):
@@ -153,7 +159,7 @@ def run(folder, scene, variants, scale=1.0):
         "reference": {"files": ["cache/5f1e-a.exr", "cache/5f1e-b.exr"], "samplesPerPixel": 16384, "relativeRmse": REFERENCE_ERROR,
                       "relativeBiasError": 0.0003, "tooNoisy": [], "method": "two independent"},
         "diagnostics": {"nonFiniteSamples": 0, "negativeSamples": 0, "stackOverflows": 0, "invalidIndices": 0},
-        "truncated": {"paths": 0}, "errors": ERRORS, "variants": summaries, "ratios": ratios(summaries),
+        "truncated": {"maxDepth": 8, "clampedSamples": 0}, "errors": ERRORS, "variants": summaries, "ratios": ratios(summaries),
         "images": write_images(folder, summaries, 1.3),
         "command": f"isolux converge scenes/{scene}/{scene}.gltf --seeds {SEEDS} --max-time 12 -o {folder.name}"}
     write(folder, report)
@@ -186,7 +192,7 @@ def faulty(folder):
     report = run(folder, "spheres", PLAIN[1:3] + [BIASED], 0.7)
     report["reference"]["tooNoisy"] = ["mis@9"]
     report["diagnostics"]["nonFiniteSamples"] = 12
-    report["truncated"]["paths"] = 345
+    report["truncated"]["clampedSamples"] = 345
     report["variants"][0]["checkpoints"][-1]["relativeRmse"] = [-0.002, -0.001, 0.0]  # below what its reference can show
     (folder / "mis-flip.png").unlink()
     write(folder, report)

@@ -127,7 +127,7 @@ class Figures(WithRuns):
 
     def test_everything_to_warn_of_is_warned_of(self):
         said = "\n".join(report_figures.warnings(self.read("faulty")[0]))
-        for words in ("too noisy for the errors of mis@9", "12 samples NaN or infinite", "345 paths truncated",
+        for words in ("too noisy for the errors of mis@9", "12 samples NaN or infinite", "345 samples clamped",
                       "clamped: the error ends at a floor of 3", "mis-flip.png is missing", "miscalibrated"):
             self.assertIn(words, said)
         self.assertNotIn("light:", said)

@@ -1,4 +1,4 @@
-"""Reads convergence.json, the form that `isolux converge` writes: what must be there is checked, what may be unknown is None."""
+"""Reads convergence.json, which `isolux converge` writes: what must be there is checked, what may be unknown is None."""
 
 import dataclasses
 import json

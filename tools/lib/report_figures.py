@@ -12,7 +12,8 @@ ESTIMATE_LIMITS = (0.9, 1.1)
 SENTENCES = 4  # as headlines of a run
 
 WORDS = {"nonFiniteSamples": "samples NaN or infinite", "negativeSamples": "samples negative",
-         "stackOverflows": "traversal stack overflows", "invalidIndices": "invalid indices"}
+         "stackOverflows": "traversal stack overflows", "invalidIndices": "invalid indices",
+         "clampedSamples": "samples clamped"}
 
 
 def time_to(variant, error):
@@ -38,8 +39,8 @@ def settled(ratio):
 def sentence(ratio):
     low, estimate, high = ratio["ratio"]
     ends = "" if None in (low, high) else f" ({short(low)}–{short(high)})"
-    said = ratio["text"] or (f"{ratio['faster']} reaches {plain_percent(ratio['error'])} relative RMSE {short(estimate)}{ends} times sooner "
-                             f"than {ratio['slower']}")
+    said = ratio["text"] or (f"{ratio['faster']} reaches {plain_percent(ratio['error'])} relative RMSE {short(estimate)}{ends} "
+                             f"times sooner than {ratio['slower']}")
     notes = ["extrapolated"] if ratio["extrapolated"] and "extrapolated" not in said else []
     notes += [] if settled(ratio) else ["not settled: the interval holds 1"]
     return said + (f" ({', '.join(notes)})" if notes else "")
@@ -93,13 +94,11 @@ def spaced(name):
     return WORDS.get(name) or re.sub(r"([A-Z])", r" \1", name).lower()
 
 
-def count_warnings(run):
-    for name, count in (run.data["diagnostics"] or {}).items():
-        if count:
-            yield f"{short(count)} {spaced(name)}"
-    for name, count in (run.data["truncated"] or {}).items():
-        if count:
-            yield f"{short(count)} {spaced(name)} truncated"
+def counted(run):
+    """What the renderer counts of what should not be, zeros too. The depth limit, a setting, is among the facts."""
+    found = (run.data["diagnostics"] or {}) | (run.data["truncated"] or {})
+    return [(count, f"{short(count)} {spaced(name)}") for name, count in found.items()
+            if count is not None and name != "maxDepth"]
 
 
 def variant_warnings(variant):
@@ -110,14 +109,15 @@ def variant_warnings(variant):
         yield f"{variant['name']}: the error does not fall as it should, so nothing is extrapolated"
     names = miscalibrated(variant)
     if names:
-        yield f"{variant['name']}: {' and '.join(names)} {'are' if len(names) > 1 else 'is'} miscalibrated at the last checkpoint"
+        verb = "are" if len(names) > 1 else "is"
+        yield f"{variant['name']}: {' and '.join(names)} {verb} miscalibrated at the last checkpoint"
 
 
 def warnings(run):
     noisy = [name for name in (run.data["reference"] or {}).get("tooNoisy") or [] if name]
     if noisy:
         yield f"The reference is too noisy for the errors of {', '.join(noisy)}"
-    yield from count_warnings(run)
+    yield from (words for count, words in counted(run) if count)
     for variant in run.variants:
         yield from variant_warnings(variant)
     for name in missing_images(run):
@@ -145,22 +145,23 @@ def seed_text(seeds):
 
 def reference_text(reference):
     sizes = f"{short(reference['samplesPerPixel'])} samples a pixel" if reference["samplesPerPixel"] else ""
-    own = f"its own relative RMSE {short_percent(reference['relativeRmse'], 2)}" if reference["relativeRmse"] is not None else ""
-    sure = (f"its mean to {short_percent(reference['relativeBiasError'], 2)} (standard error)"
-            if reference["relativeBiasError"] is not None else "")
+    rmse, error = reference["relativeRmse"], reference["relativeBiasError"]
+    own = f"its own relative RMSE {short_percent(rmse, 2)}" if rmse is not None else ""
+    sure = f"its mean to {short_percent(error, 2)} (standard error)" if error is not None else ""
     return ", ".join(filter(None, (sizes, reference["method"], own, sure)))
 
 
 def facts(run):
     """Names and texts of what a reader must know; unknown: None."""
     data = run.data
-    size = f"{short(data['width'])}{NO_BREAK}×{NO_BREAK}{short(data['height'])} pixels" if data["width"] and data["height"] else None
+    sides = [data["width"], data["height"]]
+    size = f"{NO_BREAK}×{NO_BREAK}".join(map(short, sides)) + " pixels" if all(sides) else None
     depth = None if data["scene"] is None else "none" if data["maxDepth"] is None else short(data["maxDepth"])
     driver = " ".join(filter(None, (data["driver"], data["driverVersion"]))) or None
     flip = (data["flip"] or {}).get("pixelsPerDegree")
     seeds = [seed for seed in data["seeds"] or [] if seed is not None]
     version = " ".join(filter(None, (data["version"], data["revision"] and f"(git {data['revision']})"))) or None
-    return {"Scene": data["scene"], "Scene hash": data["sceneHash"] and data["sceneHash"][:16], "Image": size, "Camera": data["camera"],
-            "Depth limit": depth, "Device": data["device"] or None, "Driver": driver, "Isolux": version,
+    return {"Scene": data["scene"], "Scene hash": data["sceneHash"] and data["sceneHash"][:16], "Image": size,
+            "Camera": data["camera"], "Depth limit": depth, "Device": data["device"] or None, "Driver": driver, "Isolux": version,
             "Seeds": seed_text(seeds) if seeds else None, "Reference": data["reference"] and reference_text(data["reference"]),
             "FLIP": f"{short(flip)} pixels a degree" if flip else None}

@@ -3,25 +3,33 @@
 import page_style
 import report_style
 from page_parts import comparator, embedded, text
-from report_figures import best, facts, headlines, missing_images, spaced, time_to, warnings
-from report_parts import cell, empty_cell, head, legend
+from report_figures import best, counted, facts, headlines, missing_images, time_to, warnings
+from report_parts import cell, empty_cell, legend, table
 from report_tables import calibration, checkpoints, rates, ratios, times
 from report_text import clock, plain_percent, short, short_percent, short_seconds
 
 CAPTIONS = {
-    "error-time": ("Error against time", "Bands: 95 % intervals over seeds. Dashed: the renderer's own estimate of its error. Dotted: errors "
-                   "whose times are asked for. Shaded: the reference's own error; it is taken out of the curves, which may go below."),
-    "error-samples": ("Error against samples", "Dash-dotted: slope −½, as of independent samples. What differs here differs in noise, not in speed."),
-    "bias-time": ("Bias against time", "Of the mean luminance, relative to the reference, with 95 % intervals: they should hold 0. Linear about 0, "
-                  "logarithmic beyond. Shaded: how well the reference's own mean is known. Points are moved a little sideways."),
-    "estimate-samples": ("The renderer's estimate of its error", "Over the true one: 1 is right, below 1 promises too much. Shaded: 10 % about 1."),
+    "error-time": (
+        "Error against time",
+        "Bands: 95 % intervals over seeds. Dashed: the renderer's own estimate of its error. Dotted: errors whose times are "
+        "asked for. Shaded: the reference's own error; it is taken out of the curves, which may go below."),
+    "error-samples": (
+        "Error against samples",
+        "Dash-dotted: slope −½, as of independent samples. What differs here differs in noise, not in speed."),
+    "bias-time": (
+        "Bias against time",
+        "Of the mean luminance, relative to the reference, with 95 % intervals: they should hold 0. Linear about 0, "
+        "logarithmic beyond. Shaded: how well the reference's own mean is known. Points are moved a little sideways."),
+    "estimate-samples": (
+        "The renderer's estimate of its error",
+        "Over the true one: 1 is right, below 1 promises too much. Shaded: 10 % about 1."),
 }
 
 EXPLANATION = (
-    "Relative RMSE is √mean((x − r)²)/mean(r) of image x and reference r, linear RGB, over the whole image; the reference's own variance "
-    "is taken out (the method is named with each reference), and what is left may be negative. Intervals are at 95 %, over independent "
-    "seeds. Seconds are wall-clock seconds of rendering, without set-up and without measuring. A ratio of times compares the "
-    "times at which two variants reach the same error.")
+    "Relative RMSE is √mean((x − r)²)/mean(r) of image x and reference r, linear RGB, over the whole image; the reference's "
+    "own variance is taken out (the method is named with each reference), and what is left may be negative. Intervals are "
+    "at 95 %, over independent seeds. Seconds are wall-clock seconds of rendering, without set-up and without measuring. A "
+    "ratio of times compares the times at which two variants reach the same error.")
 
 
 def picture(run, name, label, caption):
@@ -67,14 +75,16 @@ def strip(run):
         return ""
     reference = ""
     if images["reference"]:
-        reference = (f'<figure>{picture(run, images["reference"], "reference", "")}<figcaption><b>reference</b></figcaption></figure>')
+        shown = picture(run, images["reference"], "reference", "")
+        reference = f"<figure>{shown}<figcaption><b>reference</b></figcaption></figure>"
     figures = reference + "".join(image_figure(run, entry) for entry in images["variants"] if entry)
     choices = compared(run, images)
     slider = comparator(choices, first_shown(run, choices)) if len(choices) > 1 else ""
     seconds = images["equalTimeSeconds"]
     title = f"At equal time: {short_seconds(seconds)}" if seconds is not None else "Images"
-    return (f'<div class="block" id="{run.slug}-images"><h3>{text(title)}</h3><p>The checkpoint of each variant nearest to that time; below it the '
-            f'FLIP map: the brighter, the more visible the difference.</p><div class="pictures">{slider}<div class="sheet strip">{figures}</div></div></div>')
+    return (f'<div class="block" id="{run.slug}-images"><h3>{text(title)}</h3><p>The checkpoint of each variant '
+            "nearest to that time; below it the FLIP map: the brighter, the more visible the difference.</p>"
+            f'<div class="pictures">{slider}<div class="sheet strip">{figures}</div></div></div>')
 
 
 def plots(run, drawn):
@@ -82,13 +92,15 @@ def plots(run, drawn):
         title, explanation = CAPTIONS[name]
         return f"<figure>{drawn[name]}<figcaption><b>{text(title)}</b><span>{text(explanation)}</span></figcaption></figure>"
 
-    return (f'<div class="block" id="{run.slug}-plots">{legend(run.variants)}<div class="plots">{"".join(map(figure, drawn))}</div></div>')
+    figures = "".join(map(figure, drawn))
+    return f'<div class="block" id="{run.slug}-plots">{legend(run.variants)}<div class="plots">{figures}</div></div>'
 
 
 def plot_label(run, name):
     """What a plot says to who cannot see it."""
     title, _ = CAPTIONS[name]
-    return f"{run.title}: {title.lower()} of {', '.join(variant['name'] for variant in run.variants)}; the numbers are under Every checkpoint"
+    names = ", ".join(variant["name"] for variant in run.variants)
+    return f"{run.title}: {title.lower()} of {names}; the numbers are under Every checkpoint"
 
 
 def fact_list(run):
@@ -105,10 +117,8 @@ def fact_list(run):
 
 
 def count_list(run):
-    """Every count that the renderer keeps of what should not happen, zeros too."""
-    counts = [f"{short(count)} {spaced(name)}" for name, count in (run.data["diagnostics"] or {}).items() if count is not None]
-    counts += [f"{short(count)} {spaced(name)} truncated" for name, count in (run.data["truncated"] or {}).items() if count is not None]
-    return f"<p>Counted: {text('; '.join(counts))}.</p>" if counts else ""
+    words = "; ".join(words for _, words in counted(run))
+    return f"<p>Counted: {text(words)}.</p>" if words else ""
 
 
 def warning_box(run):
@@ -131,7 +141,8 @@ def parts(run):
 
 
 def section(run, drawn, heading):
-    return (f'<section id="{run.slug}"><h2>{text(heading)}</h2>{sentences(run)}{warning_box(run)}<nav aria-label="{text(run.title)}">{parts(run)}</nav>'
+    return (f'<section id="{run.slug}"><h2>{text(heading)}</h2>{sentences(run)}{warning_box(run)}'
+            f'<nav aria-label="{text(run.title)}">{parts(run)}</nav>'
             f"{plots(run, drawn)}{times(run)}{rates(run)}{ratios(run)}{strip(run)}{calibration(run)}{checkpoints(run)}"
             f"{fact_list(run)}{count_list(run)}</section>")
 
@@ -153,24 +164,25 @@ def overview(runs):
     if len(runs) < 2:
         return ""
     names = list(dict.fromkeys(variant["name"] for run in runs for variant in run.variants))
-    rows = ""
+    rows = []
     for run in runs:
         error = run.data["errors"][0] if run.data["errors"] else None
         winner = best(run, error) if error else None
         first = cell(run.variants[winner]["name"] if winner is not None else "none")
-        cells = "".join(overview_cell(run, name, error) if error else cell("") for name in names)
-        rows += f'<tr><th scope=row><a href="#{run.slug}">{text(run.title)}</a></th><td>{plain_percent(error) if error else ""}</td>{first}{cells}</tr>'
-    return ('<h2 id="overview">Overview</h2><p>Time to the first error asked for, with 95 % intervals; the least in bold, extrapolated times in italics.</p>'
-            f'<div class="scroll" tabindex=0 role="region" aria-label="Overview"><table><thead><tr>{head(["scene", "to", "soonest", *names])}</tr></thead>'
-            f"<tbody>{rows}</tbody></table></div>")
+        cells = [overview_cell(run, name, error) if error else cell("") for name in names]
+        rows.append((f'<a href="#{run.slug}">{text(run.title)}</a>', [cell(plain_percent(error) if error else ""), first, *cells]))
+    return ('<h2 id="overview">Overview</h2><p>Time to the first error asked for, with 95 % intervals; the least in bold, '
+            "extrapolated times in italics.</p>" + table("Overview", ["scene", "to", "soonest", *names], rows))
+
+
+MACHINE = {"Device": "", "Driver": "driver ", "Isolux": "Isolux ", "Image": ""}  # facts, with what goes before them
 
 
 def machine(runs):
     """A line for each machine and size that runs were measured on."""
     lines = {}
     for known in filter(lambda known: known["Device"], map(facts, runs)):
-        named = [f"{prefix}{known[name]}" for prefix, name in (("", "Device"), ("driver ", "Driver"), ("Isolux ", "Isolux"), ("", "Image"))
-                 if known[name]]
+        named = [f"{prefix}{known[name]}" for name, prefix in MACHINE.items() if known[name]]
         lines[" · ".join(named)] = True
     return "".join(f"<p>{text(line)}</p>" for line in lines)
 

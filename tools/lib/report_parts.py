@@ -30,8 +30,8 @@ def head(names):
 def table(caption, names, rows):
     """`rows`: of a name and its cells, which are HTML already."""
     body = "".join(f"<tr><th scope=row>{name}</th>{''.join(cells)}</tr>" for name, cells in rows)
-    return (f'<div class="scroll" tabindex=0 role="region" aria-label="{text(caption)}"><table><thead><tr>{head(names)}</tr></thead>'
-            f"<tbody>{body}</tbody></table></div>")
+    return (f'<div class="scroll" tabindex=0 role="region" aria-label="{text(caption)}">'
+            f"<table><thead><tr>{head(names)}</tr></thead><tbody>{body}</tbody></table></div>")
 
 
 def block(name, title, explanation, *parts):
@@ -54,6 +54,6 @@ def variant_name(place, variant):
 
 def legend(variants):
     """Buttons that hide and show a variant in the plots, where the script runs."""
-    keys = "".join(f'<button type="button" aria-pressed="true" data-variant="{place}">{swatch(place)}{text(variant["name"])}</button>'
-                   for place, variant in enumerate(variants))
+    keys = "".join(f'<button type="button" aria-pressed="true" data-variant="{place}">'
+                   f'{swatch(place)}{text(variant["name"])}</button>' for place, variant in enumerate(variants))
     return f'<div class="keys">{keys}</div>'

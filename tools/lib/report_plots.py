@@ -87,7 +87,8 @@ def draw_errors(axes, run, abscissa):
     """Curves with their bands; the renderer's own estimate dashed."""
     for place, variant in enumerate(run.variants):
         x, low, estimate, high = series(variant, abscissa, "relativeRmse")
-        axes.fill_between(x, numpy.maximum(low, 1e-9), high, color=colour(place), alpha=0.25, linewidth=0, gid=f"{group(place)}-band")
+        axes.fill_between(x, numpy.maximum(low, 1e-9), high, color=colour(place), alpha=0.25, linewidth=0,
+                          gid=f"{group(place)}-band")
         axes.plot(x, estimate, color=colour(place), marker=marker(place), linewidth=1.8, gid=f"{group(place)}-error",
                   label=variant["name"])
         x, _, estimate, _ = series(variant, abscissa, "estimate")
@@ -183,7 +184,8 @@ def error_samples(run):
 
 def biases(variant):
     """Arrays seconds, low, estimate, high."""
-    rows = [(point["wallSeconds"], *point["bias"]) for point in variant["checkpoints"] if point["bias"] and None not in point["bias"]]
+    rows = [(point["wallSeconds"], *point["bias"]) for point in variant["checkpoints"]
+            if point["bias"] and None not in point["bias"]]
     return numpy.array(rows, dtype=float).reshape(-1, 4).T
 
 
@@ -211,8 +213,9 @@ def set_bias_axis(axes, extent, widths):
 def draw_bias(axes, place, variant, rows):
     x, low, estimate, high = rows
     shifted = x * 1.045**(place % 5 - 2)  # so that intervals do not hide each other
-    axes.errorbar(shifted, estimate, yerr=(numpy.maximum(estimate - low, 0), numpy.maximum(high - estimate, 0)), color=colour(place),
-                  fmt=marker(place), elinewidth=1.4, capsize=2.5, label=variant["name"])
+    lengths = numpy.maximum(estimate - low, 0), numpy.maximum(high - estimate, 0)
+    axes.errorbar(shifted, estimate, yerr=lengths, color=colour(place), fmt=marker(place), elinewidth=1.4,
+                  capsize=2.5, label=variant["name"])
     for part in axes.containers[-1].get_children():
         part.set_gid(f"{group(place)}-bias")
 
@@ -241,7 +244,8 @@ def bias_time(run):
 
 def estimates(variant):
     """Arrays samples, low, estimate, high of the estimated over the true error."""
-    found = [(point["samplesPerPixel"], (point["calibration"] or {}).get("estimateOverError")) for point in variant["checkpoints"]]
+    found = [(point["samplesPerPixel"], (point["calibration"] or {}).get("estimateOverError"))
+             for point in variant["checkpoints"]]
     rows = [(x, *ratio) for x, ratio in found if ratio and None not in ratio]
     return numpy.array(rows, dtype=float).reshape(-1, 4).T
 
@@ -249,7 +253,8 @@ def estimates(variant):
 def draw_estimate(axes, place, variant, rows):
     x, low, estimate, high = rows
     axes.fill_between(x, low, high, color=colour(place), alpha=0.22, linewidth=0, gid=f"{group(place)}-band")
-    axes.plot(x, estimate, color=colour(place), marker=marker(place), linewidth=1.8, gid=f"{group(place)}-ratio", label=variant["name"])
+    axes.plot(x, estimate, color=colour(place), marker=marker(place), linewidth=1.8, gid=f"{group(place)}-ratio",
+              label=variant["name"])
 
 
 def estimate_samples(run):

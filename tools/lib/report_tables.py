@@ -89,7 +89,8 @@ def ratio_cell(found, extrapolated):
     low, estimate, high = found
     kind = "gain" if low is not None and low > 1 else "loss" if high is not None and high < 1 else ""
     ends = "" if None in (low, high) else f"{short(low)} to {short(high)}"
-    return cell(f"×{short(estimate)}", noted(ends, extrapolated), " ".join(filter(None, (kind, EXTRAPOLATED if extrapolated else ""))))
+    kinds = " ".join(filter(None, (kind, EXTRAPOLATED if extrapolated else "")))
+    return cell(f"×{short(estimate)}", noted(ends, extrapolated), kinds)
 
 
 def matrix(run, error):
@@ -134,7 +135,8 @@ def coverage_cell(coverage, counted=""):
         return empty_cell()
     share = coverage["share"] or [None, coverage["inside"] / coverage["total"], None]
     ends = "" if None in share else f"{short_percent(share[0])} to {short_percent(share[2])}"
-    return marked_cell(short_percent(share[1]), "\n".join(filter(None, (ends, counted))), outside(coverage["share"], COVERAGE_LIMITS))
+    below = "\n".join(filter(None, (ends, counted)))
+    return marked_cell(short_percent(share[1]), below, outside(coverage["share"], COVERAGE_LIMITS))
 
 
 def estimate_cell(found):
@@ -178,14 +180,16 @@ def checkpoint_row(point):
     return [cell(short(point["samplesPerPixel"])), cell(short(point["raysPerPixel"])), cell(short(point["wallSeconds"])),
             cell(short(point["deviceSeconds"])), interval_cell(point["relativeRmse"], short_percent),
             interval_cell(point["estimate"], short_percent), interval_cell(point["bias"], lambda value: short_percent(value, 2)),
-            interval_cell(point["mse"], small), interval_cell(point["relMse"], small), interval_cell(point["relMseTrimmed"], small),
+            interval_cell(point["mse"], small), interval_cell(point["relMse"], small),
+            interval_cell(point["relMseTrimmed"], small),
             interval_cell(point["biasSquared"], lambda value: short(value, 2)), interval_cell(point["mae"], small),
             interval_cell(point["flip"], small)]
 
 
 def checkpoints(run):
     rows = [(name, checkpoint_row(point)) for _, variant, name in named(run) for point in variant["checkpoints"]]
-    heads = ["variant", "samples a pixel", "rays a pixel", "seconds", "device seconds", "relative RMSE", "own estimate", "bias", "MSE",
-             "relMSE", "relMSE, trimmed", "bias²", "MAE", "FLIP"]
-    return (f'<details class="block" id="{run.slug}-checkpoints"><summary>Every checkpoint</summary><p>Means over seeds with 95 % intervals. relMSE divides '
-            "by r² + 0.01; trimmed, it leaves out the worst 0.1 % of pixels.</p>" + table("Every checkpoint", heads, rows) + "</details>")
+    heads = ["variant", "samples a pixel", "rays a pixel", "seconds", "device seconds", "relative RMSE", "own estimate", "bias",
+             "MSE", "relMSE", "relMSE, trimmed", "bias²", "MAE", "FLIP"]
+    return (f'<details class="block" id="{run.slug}-checkpoints"><summary>Every checkpoint</summary><p>Means over seeds with '
+            "95 % intervals. relMSE divides by r² + 0.01; trimmed, it leaves out the worst 0.1 % of pixels.</p>"
+            + table("Every checkpoint", heads, rows) + "</details>")
