@@ -154,6 +154,22 @@ TEST(Convergence, CheckpointsAreMeansAndMedians) {
     EXPECT_EQ(variant.seeds, 3u);
 }
 
+/// The error of a reference's mean is one for all seeds: their scatter does not show it.
+TEST(Convergence, BiasCountsTheErrorOfTheReference) {
+    Synthetic two;
+    two.seeds = 2;
+    two.checkpoints = 1;
+    std::vector<ErrorSample> samples = exactSamples(two, 1.0, 0.0);
+    samples[0].bias = 0.01;
+    samples[1].bias = 0.03;
+    ReferenceQuality reference = exactReference();
+    reference.relativeBiasError = 0.1;
+    const Interval bias = summarise(samples, reference, {{0.05}, 100}).variants.at(0).checkpoints.at(0).bias;
+    const double half = std::hypot(0.01 * 12.706204736174706, 0.1 * 1.959963984540054);
+    EXPECT_NEAR(bias.low, 0.02 - half, 1e-12);
+    EXPECT_NEAR(bias.high, 0.02 + half, 1e-12);
+}
+
 TEST(Convergence, SharesHaveWilsonsInterval) {
     // Of 10 in 10, by hand: center (1 + z^2/20)/(1 + z^2/10).
     const Interval all = Coverage{10, 10}.share();
