@@ -10,7 +10,7 @@
 namespace isolux {
 namespace {
 
-constexpr const char* kLights = "lights";
+constexpr const char* kLightChoice = "light-choice";
 
 /// A feature that the kernels reach through another alone.
 struct Requirement {
@@ -52,7 +52,7 @@ constexpr auto kMethods = std::to_array<MethodFeature>({
 });
 
 std::vector<std::string> featureNames() {
-    std::vector<std::string> names{kLights};
+    std::vector<std::string> names{kLightChoice};
     for (const NamedFeature& named : namedFeatures()) names.emplace_back(named.name);
     return names;
 }
@@ -68,12 +68,11 @@ SceneFeatures everyFeature(const SceneFeatures& needed, const RenderSettings& se
     return all;
 }
 
-/// Whether the kernels have the feature of this name; those that are more than there or not, where they are not at
-/// their least.
+/// Whether the kernels have the feature of this name.
 bool isCompiled(const std::string& name, const SceneFeatures& features) {
     for (const NamedFeature& named : namedFeatures())
         if (named.name == name) return features.*named.flag;
-    return name == kLights ? features.lights != LightCount::none : features.roulette != Roulette::off;
+    return name == kLightChoice ? features.lights == LightCount::many : features.roulette != Roulette::off;
 }
 
 } // namespace
@@ -105,7 +104,7 @@ std::optional<SceneFeatures> chosenFeatures(const FeatureOptions& options, const
     };
     for (const NamedFeature& named : namedFeatures())
         if (asked(named.name)) features.*named.flag = all.*named.flag;
-    if (asked(kLights)) features.lights = all.lights;
+    if (asked(kLightChoice)) features.lights = all.lights;
     for (const Requirement& requirement : kRequirements)
         if (features.*requirement.feature) features.*requirement.needed = all.*requirement.needed;
     return features;

@@ -17,7 +17,7 @@ namespace isolux {
 
 struct FeatureOptions {
     std::string base = "needed";   ///< or "all"
-    std::vector<std::string> with; ///< as in `namedFeatures`, or "lights"
+    std::vector<std::string> with; ///< as in `namedFeatures`, or "light-choice"
 };
 
 /// Adds --features and --with, in a group of their own.

@@ -56,7 +56,7 @@ struct NamedFeature {
 
 /// A feature, and what in the scene or the settings decided about it.
 struct FeatureNote {
-    std::string name; ///< as in `namedFeatures`; "lights" and "roulette" besides
+    std::string name; ///< as in `namedFeatures`; "light-choice" and "roulette" besides
     bool used = false;
     std::string reason; ///< half a sentence: "2 of 5 materials have one", "no mesh has any"
 };

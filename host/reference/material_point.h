@@ -19,6 +19,8 @@ template <typename Real> struct MaterialPoint {
     Real alpha = 1;        ///< of GGX
     Vec3<Real> f0{0};      ///< reflectance of the opaque part at normal incidence
     Real f90 = 0;          ///< and at grazing
+    Vec3<Real> coatF0{0};  ///< the same of its share that is no metal: what lies over the diffuse base
+    Real coatF90 = 0;
     Real ior = 1;
     Body body = Body::wall;
 
@@ -38,9 +40,10 @@ void setReflectance(MaterialPoint<Real>& point, const Attributes<Real>& attribut
     const Real specular = static_cast<Real>(material.specular) * attributes.map(place, MapSlot::specular).w;
     const auto color = Vec3<Real>(material.specularColor) * Vec3<Real>(attributes.map(place, MapSlot::specularColor));
     const Real root = (point.ior - 1) / (point.ior + 1);
-    const Vec3<Real> dielectric = specular * glm::min(root * root * color, Vec3<Real>(1));
-    point.f0 = glm::mix(dielectric, point.base, point.metal);
-    point.f90 = glm::mix(specular, Real(1), point.metal);
+    point.coatF0 = specular * glm::min(root * root * color, Vec3<Real>(1));
+    point.coatF90 = specular;
+    point.f0 = glm::mix(point.coatF0, point.base, point.metal);
+    point.f90 = glm::mix(point.coatF90, Real(1), point.metal);
 }
 
 /// The material at a point of a primitive.

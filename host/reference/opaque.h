@@ -16,12 +16,17 @@ public:
         : wo_(wo), ggx_(point.alpha), f0_(point.f0), f90_(point.f90), smooth_(isSmooth(point)) {
         const Real albedo = smooth_ ? Real(1) : reflectionAlbedoAt(wo.z, point.alpha);
         const Real rim = smooth_ ? schlickWeight(wo.z) : fresnelAlbedoAt(wo.z, point.alpha);
-        compensation_ = Real(1) + f0_ * (1 / albedo - 1);
-        const Vec3<Real> reflected = compensation_ * (f0_ + (Vec3<Real>(f90_) - f0_) * rim) * albedo;
-        const Real most = std::min(maxComponent(reflected), Real(1)); // rounding may leave a little more
-        diffuse_ = (1 - point.metal) * (1 - most) * point.base;
+        const auto compensation = [&](const Vec3<Real>& f0) { return Real(1) + f0 * (1 / albedo - 1); };
+        const auto most = [&](const Vec3<Real>& f0, Real f90) {
+            const Vec3<Real> reflected = compensation(f0) * (f0 + (Vec3<Real>(f90) - f0) * rim) * albedo;
+            return std::min(maxComponent(reflected), Real(1)); // rounding may leave a little more
+        };
+        compensation_ = compensation(f0_);
+        const Real reflected = most(f0_, f90_);
+        // The metal's share has no base below it.
+        diffuse_ = (1 - point.metal) * (1 - most(point.coatF0, point.coatF90)) * point.base;
         const Real rest = maxComponent(diffuse_);
-        specularShare_ = most > 0 ? most / (most + rest) : Real(0);
+        specularShare_ = reflected > 0 ? reflected / (reflected + rest) : Real(0);
     }
 
     /// The probability of choosing the specular lobe, given that the opaque part is.

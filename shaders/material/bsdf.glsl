@@ -45,8 +45,16 @@ Bsdf lambertianBsdf(vec3 baseColor) {
 
 vec3 specularFresnel(Bsdf bsdf, float cosine) { return bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlickWeight(cosine); }
 
+// The largest channel of what a specular lobe reflects: `albedo` for F = 1, `schlick` its mean of (1 - wo.h)^5.
+float mostReflected(vec4 fresnel, float boost, float albedo, float schlick) {
+    vec3 f0 = fresnel.rgb;
+    vec3 reflected = (1.0 + f0 * boost) * (f0 + (fresnel.a - f0) * schlick) * albedo;
+    return min(maxComponent(reflected), 1.0);
+}
+
 // What the specular lobe does at the cosine of wo: its compensation, the diffuse base it leaves, the choice between the two.
-void layerSpecular(inout Bsdf bsdf, vec3 base, float cosine, uint albedoTables) {
+// `coat`: f0 and f90 of the share that is no metal, which alone lies over the base.
+void layerSpecular(inout Bsdf bsdf, vec3 base, vec4 coat, float cosine, uint albedoTables) {
     float albedo = 1.0;
     float schlick = schlickWeight(cosine);
     if (kRoughSpecular && (bsdf.kind & kDeltaSpecular) == 0u) {
@@ -54,9 +62,8 @@ void layerSpecular(inout Bsdf bsdf, vec3 base, float cosine, uint albedoTables) 
         schlick = fresnelAlbedo(albedoTables, cosine, bsdf.alpha);
         bsdf.boost = 1.0 / albedo - 1.0;
     }
-    vec3 layer = (1.0 + bsdf.f0 * bsdf.boost) * (bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick) * albedo;
-    float reflected = min(maxComponent(layer), 1.0);
-    vec3 left = base * (1.0 - reflected);
+    float reflected = mostReflected(vec4(bsdf.f0, bsdf.f90), bsdf.boost, albedo, schlick);
+    vec3 left = base * (1.0 - mostReflected(coat, bsdf.boost, albedo, schlick));
     float diffuse = maxComponent(left);
     bsdf.specular = reflected > 0.0 ? reflected / (reflected + diffuse) : 0.0;
     bsdf.diffuse = left * (1.0 - bsdf.glass);
@@ -109,12 +116,13 @@ Bsdf bsdfAt(MaterialRecord material, MapPoint at, vec3 base, float cosine, bool 
                 color *= mapValue(material.moreMaps.w, at, true).rgb;
             }
             float ratio = (ior - 1.0) / (ior + 1.0);
-            bsdf.f0 = mix(factor * min(ratio * ratio * color, 1.0), base, metal);
-            bsdf.f90 = mix(factor, 1.0, metal);
+            vec4 coat = vec4(factor * min(ratio * ratio * color, 1.0), factor);
+            bsdf.f0 = mix(coat.rgb, base, metal);
+            bsdf.f90 = mix(coat.a, 1.0, metal);
             if (maxComponent(bsdf.f0) > 0.0 || bsdf.f90 > 0.0) {
                 bsdf.kind &= ~kLambertian;
                 if (!kRoughSpecular || bsdf.alpha < kSmallestAlpha) bsdf.kind |= kDeltaSpecular;
-                layerSpecular(bsdf, base * (1.0 - metal), cosine, at.textures.w);
+                layerSpecular(bsdf, base * (1.0 - metal), coat, cosine, at.textures.w);
             }
         }
         if ((bsdf.kind & kLambertian) == 0u && bsdf.specular == 0.0) bsdf.diffuse = base * (1.0 - bsdf.glass);

@@ -57,7 +57,7 @@ TEST_F(FeatureOptionsTest, MethodsAreFeaturesToo) {
 TEST_F(FeatureOptionsTest, MoreThanIsNeededChangesNoBit) {
     const json needed = reportOf("");
     const Image image = readImage(file("a.exr"));
-    for (const char* options : {"--features all", "--with spheres,smooth-normals --with lights"}) {
+    for (const char* options : {"--features all", "--with spheres,smooth-normals --with light-choice"}) {
         const json more = reportOf(options);
         EXPECT_TRUE(has(more, "spheres")) << options;
         EXPECT_TRUE(contains(more.at("features").at("spheres").at("reason"), "all the same")) << options;
@@ -69,6 +69,14 @@ TEST_F(FeatureOptionsTest, MoreThanIsNeededChangesNoBit) {
     }
     EXPECT_TRUE(has(reportOf("--with rough-glass"), "glass")) << "what it is reached through";
     EXPECT_FALSE(has(reportOf("--features all --integrator normals --environment 1"), "environment"));
+}
+
+/// The box has a lamp of two triangles; a sky alone is one light, and none is chosen, whatever roulette does.
+TEST_F(FeatureOptionsTest, OneLightIsNotChosen) {
+    EXPECT_TRUE(has(reportOf(""), "light-choice"));
+    EXPECT_TRUE(has(reportOf("--roulette off --max-depth 2"), "light-choice"));
+    const std::string noLamps = "--environment 1 --light-sampling ";
+    EXPECT_FALSE(has(reportOf(noLamps + "bsdf"), "light-choice")) << "no light is sampled";
 }
 
 TEST_F(FeatureOptionsTest, TheReferenceHasNoKernels) {

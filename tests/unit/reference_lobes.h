@@ -35,8 +35,16 @@ inline MaterialPoint<double> coatedPoint(double alpha, double ior, const Vec3d& 
     point.alpha = alpha;
     point.ior = ior;
     const double root = (ior - 1.0) / (ior + 1.0);
-    point.f0 = Vec3d(root * root);
-    point.f90 = 1.0;
+    point.f0 = point.coatF0 = Vec3d(root * root);
+    point.f90 = point.coatF90 = 1.0;
+    return point;
+}
+
+/// Partly metal, as filters between texels make it.
+inline MaterialPoint<double> halfMetalPoint(double alpha) {
+    MaterialPoint<double> point = coatedPoint(alpha, 1.5);
+    point.metal = 0.5;
+    point.f0 = glm::mix(point.f0, point.base, point.metal);
     return point;
 }
 

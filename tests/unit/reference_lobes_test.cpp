@@ -298,6 +298,22 @@ TEST(ReferenceLobes, WhiteSurfacesReturnEverything) {
         }
 }
 
+/// Metal of a share m lets the base show through 1 - m, once. What is missing is the compensation's part of the second
+/// order in F0: it is k = 1/E - 1 times F0 of the mixture, whose square is less than the mean of the squares by m (1 -
+/// m) at most, and it multiplies an albedo of E at most; k E = 1 - E.
+TEST(ReferenceLobes, HalfMetalsLoseLittle) {
+    for (const double alpha : {1e-6, 1e-3, 0.03, 0.25, 1.0})
+        for (const double cosine : {1.0, 0.6, 0.1}) {
+            const MaterialPoint<double> point = halfMetalPoint(alpha);
+            const Albedo albedo = albedoOf(Bsdf<double>(point, directionOfCosine(cosine), Side::front), 12000);
+            const double single = alpha < kSmallestAlpha ? 1.0 : reflectionAlbedoAt(cosine, alpha);
+            const double missing = point.metal * (1.0 - point.metal) * (1.0 - single);
+            const double error = kTableError + kSigmas * albedo.standardError.x;
+            EXPECT_LE(albedo.mean.x, 1.0 + error) << alpha << ' ' << cosine;
+            EXPECT_GE(albedo.mean.x, 1.0 - missing - error) << alpha << ' ' << cosine;
+        }
+}
+
 TEST(ReferenceLobes, FloatAgreesWithDouble) {
     for (const double alpha : {1e-3, 0.03, 0.5})
         for (const LobeCase& surface : lobeCases(alpha))
@@ -309,6 +325,8 @@ TEST(ReferenceLobes, FloatAgreesWithDouble) {
                 single.alpha = static_cast<float>(alpha);
                 single.f0 = Vec3f(surface.point.f0);
                 single.f90 = static_cast<float>(surface.point.f90);
+                single.coatF0 = Vec3f(surface.point.coatF0);
+                single.coatF90 = static_cast<float>(surface.point.coatF90);
                 single.ior = static_cast<float>(surface.point.ior);
                 single.body = surface.point.body;
                 const Vec3d wo = directionOfCosine(cosine);
