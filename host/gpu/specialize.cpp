@@ -52,7 +52,7 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, cons
     const PipelineKey key = specializedKey(spirv, constants);
     const std::vector<std::byte> bytes = folder.load(key);
     if (bytes.empty()) {
-        const std::vector<std::uint32_t> folded = specialize(spirv, constants);
+        std::vector<std::uint32_t> folded = specialize(spirv, constants);
         folder.store(key, std::as_bytes(std::span(folded)));
         return folded;
     }
