@@ -86,7 +86,8 @@ void Kernel::createLayouts(std::uint32_t pushConstantSize) {
 }
 
 void Kernel::createPipeline(const KernelSource& source) {
-    const std::vector<std::uint32_t> spirv = specialize(source.spirv, source.specialization);
+    const std::vector<std::uint32_t> spirv =
+        specialize(source.spirv, source.specialization, PipelineFolder(device_->cacheFolder()));
     auto moduleInfo = vulkanStruct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     moduleInfo.codeSize = spirv.size() * sizeof(spirv[0]);
     moduleInfo.pCode = spirv.data();

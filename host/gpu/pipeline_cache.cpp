@@ -80,13 +80,15 @@ bool writeFile(const std::filesystem::path& path, std::span<const std::byte> byt
 
 } // namespace
 
-std::uint64_t hashKernel(std::span<const std::uint32_t> spirv, const Specialization& specialization) {
+std::uint64_t hashKernel(std::span<const std::uint32_t> spirv, const Specialization& specialization,
+                         std::string_view maker) {
     Fnv hash;
     for (const std::uint32_t word : spirv) hash.add(word);
     for (const auto& [id, value] : specialization) {
         hash.add(id);
         hash.add(value);
     }
+    hash.add(std::as_bytes(std::span(maker)));
     return hash.state();
 }
 

@@ -1,5 +1,5 @@
-// What drivers make of kernels, kept in files from one run to the next. A file that is damaged, or was written by
-// another driver, is as good as none; a folder that cannot be written to is no error.
+// What drivers, and specialize.h before them, make of kernels, kept in files from one run to the next. A file that is
+// damaged, or was written by another driver, is as good as none; a folder that cannot be written to is no error.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace isolux {
@@ -34,9 +35,11 @@ struct PipelineKey {
     friend bool operator==(const PipelineKey&, const PipelineKey&) = default;
 };
 
-/// 64-bit FNV-1a of the module and its constants. A collision costs time alone: drivers tell pipelines apart
-/// themselves.
-[[nodiscard]] std::uint64_t hashKernel(std::span<const std::uint32_t> spirv, const Specialization& specialization);
+/// 64-bit FNV-1a of the module, its constants and, for what is not a driver's, the name of what makes something of
+/// them. Drivers tell pipelines apart themselves; among the other files of a folder, 128 at most, two hashes meet by
+/// chance with a probability below 2^-50 (birthdays: 128^2 / 2 / 2^64).
+[[nodiscard]] std::uint64_t hashKernel(std::span<const std::uint32_t> spirv, const Specialization& specialization,
+                                       std::string_view maker = {});
 
 /// The bytes of a file that holds a driver's data for this key.
 [[nodiscard]] std::vector<std::byte> encodePipeline(const PipelineKey& key, std::span<const std::byte> data);

@@ -1,4 +1,4 @@
-// Folding a kernel's specialisation constants before a driver sees it.
+// Folding a kernel's specialisation constants before a driver sees it, once for each set of values.
 #pragma once
 
 #include "gpu/pipeline_cache.h"
@@ -15,5 +15,13 @@ namespace isolux {
 /// Throws Error if SPIRV-Tools refuses the module.
 [[nodiscard]] std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv,
                                                     const Specialization& constants);
+
+/// Which file keeps what `specialize` makes of a module. It belongs to no driver; other passes or another SPIRV-Tools
+/// make another key.
+[[nodiscard]] PipelineKey specializedKey(std::span<const std::uint32_t> spirv, const Specialization& constants);
+
+/// The same, kept in a folder from one run to the next.
+[[nodiscard]] std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv,
+                                                    const Specialization& constants, const PipelineFolder& folder);
 
 } // namespace isolux
