@@ -74,8 +74,8 @@ Mesh slab(std::uint32_t material) {
 
 // What comes in one copy is first in scene order, so that lamps keep their places in it.
 
-Scene floorScene(Copies copies, LitBy light) {
-    Builder builder(askew(), light);
+Scene floorScene(Copies copies, LitBy light, Lie lie) {
+    Builder builder(lie == Lie::askew ? askew() : Mat4d(1.0), light);
     builder.light(light);
     builder.add(square(1.0f, 0.0f, 0), copies);
     return builder.take();

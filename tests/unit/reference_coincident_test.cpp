@@ -34,14 +34,16 @@ INSTANTIATE_TEST_SUITE_P(Precisions, CoincidentInReference,
                          ::testing::Values(Precision::singlePrecision, Precision::doublePrecision));
 
 TEST_P(CoincidentInReference, FloorsReflectAsOne) {
-    for (const Copies copies : {Copies::one, Copies::two, Copies::three})
-        expectAlbedo(floorScene(copies, LitBy::environment));
+    for (const Lie lie : {Lie::level, Lie::askew})
+        for (const Copies copies : {Copies::one, Copies::two, Copies::three})
+            expectAlbedo(floorScene(copies, LitBy::environment, lie));
     expectAlbedo(tiledFloorScene(LitBy::environment));
 }
 
 TEST_P(CoincidentInReference, CopiesAreTheSameFilmAsOne) {
     for (const LitBy light : {LitBy::environment, LitBy::lamp}) {
-        expectSameFilm(floorScene(Copies::three, light), floorScene(Copies::one, light));
+        for (const Lie lie : {Lie::level, Lie::askew})
+            expectSameFilm(floorScene(Copies::three, light, lie), floorScene(Copies::one, light, lie));
         for (const double thickness : {0.0, 1.0})
             expectSameFilm(slabScene(Copies::two, light, thickness), slabScene(Copies::one, light, thickness));
     }
