@@ -3,6 +3,7 @@
 #define ISOLUX_GEOMETRY_TRAVERSE_GLSL
 
 #include "core/scene_access.glsl"
+#include "geometry/plane.glsl"
 #include "geometry/ray.glsl"
 #include "geometry/sphere.glsl"
 #include "geometry/triangle.glsl"
@@ -24,6 +25,7 @@ uvec2 traversalTests = uvec2(0u); // boxes and primitives tested since a kernel 
 struct Traversal {
     float distance;  // nearest hit so far, or the limit
     uint primitive;  // its primitive, or kNone
+    uint id;         // and that primitive's place in scene order: of hits at equal distance the lowest counts; 0 without
     uint stackCount; // entries waiting, or without a BVH primitives; 0: finished
 };
 
@@ -36,8 +38,13 @@ struct Query {
     uint kind;
     uint alphaKey;    // decides about surfaces that are there by chance
     uint ignored;     // the flat primitive the ray leaves: it cannot be hit again, whatever rounding says
+    Plane plane;      // and neither can any other triangle in its plane
     uint alsoIgnored; // the light a shadow ray ends at
 };
+
+uint idOf(PrimitiveRecord primitive) { return floatBitsToUint(primitive.p2Id.w) & kIdMask; }
+
+uint idOf(uint primitive) { return primitive == kNone ? 0u : idOf(readPrimitive(primitive)); }
 
 // Whether the surface of a primitive with kAlphaBit is there, at barycentric coordinates of it; the kernel knows.
 bool surfaceIsThere(PrimitiveRecord primitive, uint index, vec3 barycentric, uint key);
@@ -45,7 +52,7 @@ bool surfaceIsThere(PrimitiveRecord primitive, uint index, vec3 barycentric, uin
 Traversal beginTraversal(float limit, uint nodeCount, uint primitiveCount) {
     stackItems[0] = 0u;
     stackEntries[0] = 0.0;
-    return Traversal(limit, kNone, kEveryPrimitive ? primitiveCount : min(nodeCount, 1u));
+    return Traversal(limit, kNone, 0u, kEveryPrimitive ? primitiveCount : min(nodeCount, 1u));
 }
 
 vec4 bytesOf(uint word) { return vec4(uvec4(word, word >> 8, word >> 16, word >> 24) & 0xFFu); }
@@ -116,26 +123,35 @@ void visitNode(uint node, Query query, RayTransform transform, inout Traversal s
     pushChild(entries.w, children.w, state.stackCount, overflows);
 }
 
+// The nearest hit counts, and of several at one distance that of the lowest id, in whatever order they are met.
+bool comesBefore(float distance, uint id, Traversal state) {
+    return distance > 0.0 && (distance < state.distance || (distance == state.distance && id < state.id));
+}
+
 void testPrimitive(uint index, Query query, RayTransform transform, inout Traversal state) {
     PrimitiveRecord primitive = readPrimitive(index);
     if (kTraversalCounts) ++traversalTests.y;
     float distance;
     vec3 barycentric = vec3(0.0);
+    bool ignored = index == query.ignored || index == query.alsoIgnored;
     if (kSpheres && (floatBitsToUint(primitive.p2Id.w) & kSphereBit) != 0u) {
         distance = intersectSphere(primitive.p0Material.xyz, primitive.p1Light.x, query.ray.origin, query.ray.direction);
     } else {
-        TriangleHit hit = intersectTriangle(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
-                                            query.ray, transform);
+        vec3 p0 = primitive.p0Material.xyz;
+        vec3 p1 = primitive.p1Light.xyz;
+        vec3 p2 = primitive.p2Id.xyz;
+        TriangleHit hit = intersectTriangle(p0, p1, p2, query.ray, transform);
         distance = hit.distance;
         barycentric = vec3(hit.b0, hit.b1, 1.0 - hit.b0 - hit.b1);
+        ignored = ignored || liesIn(query.plane, p0, p1, p2);
     }
-    bool ignored = index == query.ignored || index == query.alsoIgnored;
-    bool nearer = !ignored && distance > 0.0 && distance < state.distance;
+    bool nearer = !ignored && comesBefore(distance, idOf(primitive), state);
     if (kCutouts && nearer && (floatBitsToUint(primitive.p2Id.w) & kAlphaBit) != 0u)
         nearer = surfaceIsThere(primitive, index, barycentric, query.alphaKey);
     if (nearer) {
         state.distance = distance;
         state.primitive = index;
+        state.id = idOf(primitive);
     }
 }
 

@@ -17,7 +17,7 @@ bool surfaceIsThere(PrimitiveRecord primitive, uint index, vec3 barycentric, uin
 
 void trace(uint index) {
     RayRecord record = rays[index];
-    Query query = Query(Ray(record.originDistance.xyz, record.direction.xyz), kNearestHit, 0u, kNone, kNone);
+    Query query = Query(Ray(record.originDistance.xyz, record.direction.xyz), kNearestHit, 0u, kNone, planeOf(kNone), kNone);
     RayTransform transform = transformFor(query.ray);
     Traversal state = beginTraversal(record.originDistance.w, 1u, 0u);
     uint overflows = 0u;
@@ -26,6 +26,7 @@ void trace(uint index) {
         if (parameters.range.z > 0u) {
             state.distance = hits[index].distance.x;
             state.primitive = hits[index].primitive.x;
+            state.id = idOf(state.primitive);
         }
         for (uint i = parameters.range.z; i < parameters.range.w; ++i) testPrimitive(i, query, transform, state);
         state.stackCount = 0u;

@@ -101,7 +101,7 @@ void loadPath(uint lane) {
     path.shadowDirection = record.shadowDirection.xyz;
     path.shadowPrimitive = record.ignored.y;
     path.shadowRadiance = record.shadowRadiance.xyz;
-    path.traversal = Traversal(record.directionDistance.w, record.progress.z, record.progress.w);
+    path.traversal = Traversal(record.directionDistance.w, record.progress.z, idOf(record.progress.z), record.progress.w);
     path.lightsLeft = record.bounce.w;
     path.radianceScale = record.throughput.w;
     path.medium = floatBitsToUint(record.radiance.w);

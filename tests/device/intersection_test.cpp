@@ -156,15 +156,14 @@ struct Disagreement {
     std::size_t unfinished = 0;
 };
 
-/// The nearest distances must be the same to the last bit; which of several primitives at it is named may differ.
+/// The nearest distances must be the same to the last bit, and of several primitives at it the same is named.
 Disagreement disagreement(const Hits& a, const Hits& b) {
     Disagreement result;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const bool hitA = a[i].primitive.x != shared::kNone;
-        const bool hitB = b[i].primitive.x != shared::kNone;
         if (hitA) ++result.hits;
         if (a[i].primitive.y == 0 || b[i].primitive.y == 0) ++result.unfinished;
-        if (hitA != hitB || (hitA && a[i].distance.x != b[i].distance.x)) ++result.count;
+        if (a[i].primitive.x != b[i].primitive.x || (hitA && a[i].distance.x != b[i].distance.x)) ++result.count;
     }
     return result;
 }
