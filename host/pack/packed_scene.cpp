@@ -105,14 +105,18 @@ private:
     void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
         primitives_.records.push_back({word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])),
-                                       word(p[2], asFloat(id | alphaBit(material)))});
+                                       word(p[2], asFloat(id | surfaceBits(material)))});
         Box3f box;
         for (const Vec3f& vertex : p) box.extend(vertex);
         primitives_.boxes.push_back(box);
     }
 
-    [[nodiscard]] std::uint32_t alphaBit(std::uint32_t material) const {
-        return materials_[material].alphaMode == AlphaMode::opaque ? 0u : shared::kAlphaBit;
+    /// What rays that meet a primitive must ask: whether the surface is there, and whether its back is. The latter of
+    /// the material as the scene has it: a map that lets nothing through gives no back to cull.
+    [[nodiscard]] std::uint32_t surfaceBits(std::uint32_t material) const {
+        const bool covers = materials_[material].alphaMode == AlphaMode::opaque;
+        const bool culled = settings_.backFaces == BackFaces::culled && scene_.materials[material].isSingleSided();
+        return (covers ? 0u : shared::kAlphaBit) | (culled ? shared::kCulledBackBit : 0u);
     }
 
     void addSphere(const Sphere& sphere) {
@@ -122,7 +126,7 @@ private:
         const auto radius = static_cast<float>(sphere.radius * packed_.space.scale);
         primitives_.records.push_back(
             {word(center, asFloat(sphere.material)), word({radius, 0.0f, 0.0f}, asFloat(lights_.lightOf[id])),
-             word(Vec3f(0.0f), asFloat(id | shared::kSphereBit | alphaBit(sphere.material)))});
+             word(Vec3f(0.0f), asFloat(id | shared::kSphereBit | surfaceBits(sphere.material)))});
         Box3f box;
         for (int axis = 0; axis < 3; ++axis) {
             box.lower[axis] = std::nextafter(center[axis] - radius, -std::numeric_limits<float>::infinity());

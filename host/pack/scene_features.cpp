@@ -34,6 +34,7 @@ constexpr auto kNamed = std::to_array<NamedFeature>({
     {"alpha-mask", &SceneFeatures::alphaMask},
     {"alpha-blend", &SceneFeatures::alphaBlend},
     {"unlit", &SceneFeatures::unlit},
+    {"back-face-culling", &SceneFeatures::backFaceCulling},
 });
 
 bool usesMap(const Material& material, MapSlot slot) { return material.map(slot).present(); }
@@ -114,6 +115,7 @@ public:
         findLights();
         findRoulette();
         for (const SurfaceFeature& feature : kOfSurfaces) findOnSurfaces(feature);
+        findCulledBacks(used);
     }
 
     [[nodiscard]] const SceneFeatures& features() const { return features_; }
@@ -193,6 +195,17 @@ private:
     void findOnSurfaces(const SurfaceFeature& feature) {
         const auto count = std::count_if(materials_.begin(), materials_.end(), feature.has);
         note(feature.flag, count > 0, fmt::format("{} of {} materials {}", count, materials_.size(), feature.having));
+    }
+
+    /// Of the materials as the scene has them, as Packer culls.
+    void findCulledBacks(const std::vector<bool>& used) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < used.size(); ++i)
+            if (used[i] && scene_.materials[i].isSingleSided()) ++count;
+        const bool culled = settings_.backFaces == BackFaces::culled;
+        note(&SceneFeatures::backFaceCulling, culled && count > 0,
+             culled ? fmt::format("{} of {} materials are single-sided", count, materials_.size())
+                    : "back faces are shown");
     }
 
     const Scene& scene_;

@@ -40,6 +40,7 @@ struct SceneFeatures {
     bool alphaMask = true;
     bool alphaBlend = true;
     bool unlit = true;
+    bool backFaceCulling = true; ///< some surface has no back
 
     friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };

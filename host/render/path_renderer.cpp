@@ -92,6 +92,7 @@ constexpr auto kFeatureConstants = std::to_array<std::pair<std::uint32_t, bool S
     {shared::kSpecAlphaMask, &SceneFeatures::alphaMask},
     {shared::kSpecAlphaBlend, &SceneFeatures::alphaBlend},
     {shared::kSpecUnlit, &SceneFeatures::unlit},
+    {shared::kSpecBackFaceCulling, &SceneFeatures::backFaceCulling},
 });
 
 Specialization specializeFeatures(const SceneFeatures& features) {
