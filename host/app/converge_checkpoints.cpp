@@ -1,5 +1,7 @@
 #include "app/converge_checkpoints.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace isolux {
@@ -18,11 +20,18 @@ SeedRecorder::SeedRecorder(MeasuredVariant& measured, const ConvergeLimits& limi
 
 Continue SeedRecorder::pass(const Film& film) {
     clock_.hold();
-    const double samples = samplesPerPixel(film);
-    if (samples >= nextPower_) takePower(film);
-    ended_ = samples >= limits_.maxSamples || (!samples_.powers.empty() && timeIsUp());
+    taken_ = samplesPerPixel(film);
+    if (taken_ >= nextPower_) takePower(film);
+    ended_ = taken_ >= limits_.maxSamples || (!samples_.powers.empty() && timeIsUp());
     clock_.go();
     return ended_ ? Continue::no : Continue::yes;
+}
+
+double SeedRecorder::fraction() const {
+    const double ofSamples = std::min(taken_ / limits_.maxSamples, 1.0);
+    if (!limits_.maxSeconds || !measured_.checkpoints) return ofSamples;
+    // Each checkpoint takes as long as all before it.
+    return std::clamp(taken_ / std::exp2(static_cast<double>(*measured_.checkpoints) - 1.0), ofSamples, 1.0);
 }
 
 /// The first seed of a variant stops where the next checkpoint would come too late, the others where it did.

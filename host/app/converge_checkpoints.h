@@ -33,6 +33,8 @@ public:
     /// At the end of a whole seed: it becomes the variant's.
     void finish(const Film& film);
     [[nodiscard]] bool ended() const { return ended_; }
+    /// Of the samples or of the checkpoints that a whole seed has.
+    [[nodiscard]] double fraction() const;
 
 private:
     [[nodiscard]] bool timeIsUp() const;
@@ -48,6 +50,7 @@ private:
     CheckpointGatherer end_;
     SeedSamples samples_;
     double nextPower_ = 1.0; ///< samples a pixel
+    double taken_ = 0.0;     ///< the same
     bool ended_ = false;
     RenderClock clock_;
 };

@@ -39,8 +39,10 @@ bool measureSeed(MeasuredVariant& measured, const Job& job, const ConvergeLimits
                  const ProgressCallback& progress) {
     SeedRecorder recorder(measured, limits, meter, job.seed);
     const SeedRequest request{job.seed, measured.variant.settings.sampleCount, measured.variant.stopping};
-    const Film film = measured.renderer->render(
-        request, [&](const Film& done) { return recorder.pass(done); }, progress);
+    const auto pass = [&](const Film& done) { return recorder.pass(done); };
+    // How much of the samples that a render may take are done says little where something else ends it.
+    const auto whole = [&](double) { return progress(recorder.fraction()); };
+    const Film film = measured.renderer->render(request, pass, whole);
     if (interruptRequested() && !recorder.ended()) return false;
     recorder.finish(film);
     return true;
