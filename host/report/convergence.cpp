@@ -29,6 +29,13 @@ Interval scaled(const Interval& interval, double factor) {
     return {interval.low * factor, interval.estimate * factor, interval.high * factor};
 }
 
+/// The interval where the estimate has another, independent standard error that is known for sure.
+Interval widened(const Interval& interval, double standardError) {
+    const double half =
+        std::hypot(0.5 * (interval.high - interval.low), normalQuantile(0.5 + 0.5 * kConfidence) * standardError);
+    return {interval.estimate - half, interval.estimate, interval.estimate + half};
+}
+
 /// The mean of the reference: as given, else as the samples' own relative errors have it.
 double referenceMean(const SeedCurves& curves, const ReferenceQuality& reference) {
     if (reference.mean > 0.0) return reference.mean;
@@ -63,11 +70,11 @@ double meanRays(const std::vector<const ErrorSample*>& samples) {
 }
 
 CheckpointSummary summariseCheckpoint(const std::vector<const ErrorSample*>& samples, double referenceMean,
-                                      std::uint64_t pixels) {
+                                      const ReferenceQuality& reference) {
     const auto average = [&](double ErrorSample::*figure) { return meanInterval(column(samples, figure)); };
     CheckpointSummary summary;
     summary.samplesPerPixel = mean(column(samples, &ErrorSample::samplesPerPixel));
-    summary.raysPerPixel = pixels > 0 ? meanRays(samples) / static_cast<double>(pixels) : kUnknown;
+    summary.raysPerPixel = reference.pixels > 0 ? meanRays(samples) / static_cast<double>(reference.pixels) : kUnknown;
     summary.wallSeconds = median(column(samples, &ErrorSample::wallSeconds));
     summary.deviceSeconds = median(column(samples, &ErrorSample::deviceSeconds));
     summary.mse = average(&ErrorSample::mse);
@@ -75,7 +82,7 @@ CheckpointSummary summariseCheckpoint(const std::vector<const ErrorSample*>& sam
     summary.relMseTrimmed = average(&ErrorSample::relMseTrimmed);
     summary.mae = average(&ErrorSample::mae);
     summary.flip = average(&ErrorSample::flip);
-    summary.bias = average(&ErrorSample::bias);
+    summary.bias = widened(average(&ErrorSample::bias), reference.relativeBiasError); // it is one for all seeds
     summary.relativeRmse = scaled(map(summary.mse, signedRoot), 1.0 / referenceMean);
     summary.estimate = rootMeanSquare(column(samples, &ErrorSample::estimate));
     return summary;
@@ -158,7 +165,7 @@ FittedVariant fitVariant(const SeedCurves& seedCurves, const ReferenceQuality& r
     summary.seeds = fitted.seeds;
     summary.setupSeconds = median(column(seedCurves.checkpoints.back(), &ErrorSample::setupSeconds));
     for (const auto& samples : seedCurves.checkpoints)
-        summary.checkpoints.push_back(summariseCheckpoint(samples, mean, reference.pixels));
+        summary.checkpoints.push_back(summariseCheckpoint(samples, mean, reference));
     const ResampledCurves curves = resampleCurves(seedCurves, options.resamples);
     fitCurves(summary, curves, mean);
     for (const double error : options.errors)

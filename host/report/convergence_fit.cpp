@@ -73,6 +73,68 @@ template <typename Value> double goldenSection(double low, double high, const Va
     return 0.5 * (low + high);
 }
 
+/// The points of one fit, relative to the curve they are weighted by.
+class FloorPoints {
+public:
+    void add(double logSamples, double mse, double scale) {
+        logSamples_.push_back(logSamples);
+        ones_.push_back(1.0 / scale);
+        values_.push_back(mse / scale);
+        powers_.push_back(0.0);
+    }
+
+    struct Solution {
+        double floor = 0.0;
+        double residual = 0.0;
+    };
+
+    /// y = c u + f with u = n^-exponent, everything divided by the scale: normal equations, then the squares they
+    /// leave.
+    Solution solve(double exponent) {
+        double sumOneOne = 0.0, sumOneU = 0.0, sumUU = 0.0, sumOneY = 0.0, sumUY = 0.0;
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            const double u = powers_[i] = ones_[i] * std::exp(-exponent * logSamples_[i]);
+            sumOneOne += ones_[i] * ones_[i];
+            sumOneU += ones_[i] * u;
+            sumUU += u * u;
+            sumOneY += ones_[i] * values_[i];
+            sumUY += u * values_[i];
+        }
+        const double determinant = sumOneOne * sumUU - sumOneU * sumOneU;
+        const double factor = (sumOneOne * sumUY - sumOneU * sumOneY) / determinant;
+        Solution solution{(sumUU * sumOneY - sumOneU * sumUY) / determinant, 0.0};
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            const double residual = values_[i] - factor * powers_[i] - solution.floor * ones_[i];
+            solution.residual += residual * residual;
+        }
+        return solution;
+    }
+
+private:
+    std::vector<double> logSamples_;
+    std::vector<double> ones_;
+    std::vector<double> values_;
+    std::vector<double> powers_;
+};
+
+/// A scan first: there may be more than one minimum.
+double bestExponent(FloorPoints& points) {
+    constexpr int kSteps = 10;
+    constexpr double kStep = (kLargestExponent - kLeastExponent) / kSteps;
+    const auto residual = [&](double exponent) { return points.solve(exponent).residual; };
+    int best = 0;
+    double least = kInfinity;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double value = residual(kLeastExponent + i * kStep);
+        if (value < least) {
+            least = value;
+            best = i;
+        }
+    }
+    return goldenSection(kLeastExponent + std::max(best - 1, 0) * kStep,
+                         kLeastExponent + std::min(best + 1, kSteps) * kStep, residual);
+}
+
 } // namespace
 
 Interval percentileInterval(double estimate, std::vector<double> resampled, std::size_t seeds) {
@@ -120,53 +182,15 @@ FloorFit::FloorFit(const MeanCurve& curve, std::size_t start) : start_(start) {
         scale_.push_back(std::exp(line.intercept + line.slope * std::log(samples)));
 }
 
-/// Normal equations of y = c u + f with u = (n / n_last)^-b.
-FloorFit::Solution FloorFit::solve(const MeanCurve& curve, double exponent) const {
-    double sumW = 0.0, sumU = 0.0, sumUu = 0.0, sumY = 0.0, sumUy = 0.0;
-    std::vector<double> powers(curve.size());
-    for (std::size_t i = start_; i < curve.size(); ++i) {
-        const double weight = 1.0 / (scale_[i] * scale_[i]);
-        const double u = powers[i] = std::pow(curve.samples[i] / curve.samples.back(), -exponent);
-        sumW += weight;
-        sumU += weight * u;
-        sumUu += weight * u * u;
-        sumY += weight * curve.mse[i];
-        sumUy += weight * u * curve.mse[i];
-    }
-    const double determinant = sumW * sumUu - sumU * sumU;
-    Solution solution{(sumUu * sumY - sumU * sumUy) / determinant, 0.0};
-    const double factor = (sumW * sumUy - sumU * sumY) / determinant;
-    for (std::size_t i = start_; i < curve.size(); ++i) {
-        const double residual = (curve.mse[i] - factor * powers[i] - solution.floor) / scale_[i];
-        solution.residual += residual * residual;
-    }
-    return solution;
-}
-
-/// A scan first: there may be more than one minimum.
-double FloorFit::bestExponent(const MeanCurve& curve) const {
-    constexpr int kSteps = 10;
-    constexpr double kStep = (kLargestExponent - kLeastExponent) / kSteps;
-    const auto residual = [&](double exponent) { return solve(curve, exponent).residual; };
-    int best = 0;
-    double least = kInfinity;
-    for (int i = 0; i <= kSteps; ++i) {
-        const double value = residual(kLeastExponent + i * kStep);
-        if (value < least) {
-            least = value;
-            best = i;
-        }
-    }
-    return goldenSection(kLeastExponent + std::max(best - 1, 0) * kStep,
-                         kLeastExponent + std::min(best + 1, kSteps) * kStep, residual);
-}
-
 double FloorFit::operator()(const MeanCurve& curve) const {
     // What an exponent that is off by the resolution of its search, times the logarithm of the range of samples, may
     // leave of an exact power; far below any noise.
     constexpr double kRounding = 1e-5;
     if (curve.size() - start_ < kFewestFitted || std::isnan(scale_.back())) return kUnknown;
-    const double floor = solve(curve, bestExponent(curve)).floor;
+    FloorPoints points;
+    for (std::size_t i = start_; i < curve.size(); ++i)
+        points.add(std::log(curve.samples[i] / curve.samples.back()), curve.mse[i], scale_[i]);
+    const double floor = points.solve(bestExponent(points)).floor;
     return std::abs(floor) < kRounding * scale_.back() ? 0.0 : floor;
 }
 

@@ -40,13 +40,6 @@ public:
     [[nodiscard]] double operator()(const MeanCurve& curve) const;
 
 private:
-    struct Solution {
-        double floor = 0.0;
-        double residual = 0.0;
-    };
-    [[nodiscard]] Solution solve(const MeanCurve& curve, double exponent) const;
-    [[nodiscard]] double bestExponent(const MeanCurve& curve) const;
-
     std::size_t start_;
     std::vector<double> scale_; ///< of each checkpoint
 };

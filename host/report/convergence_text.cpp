@@ -18,13 +18,15 @@ using nlohmann::ordered_json;
 
 using Row = std::array<std::string, 6>;
 
+std::string numberOrNothing(double value) { return std::isnan(value) ? "" : formatNumber(value); }
+
 Row tableRow(const CheckpointSummary& checkpoint) {
     return {formatNumber(checkpoint.samplesPerPixel),
             formatNumber(checkpoint.wallSeconds),
             formatInterval(checkpoint.relativeRmse),
             formatPercentInterval(checkpoint.bias),
-            std::isnan(checkpoint.flip.estimate) ? "" : formatNumber(checkpoint.flip.estimate),
-            formatNumber(checkpoint.estimate.estimate / checkpoint.relativeRmse.estimate)};
+            numberOrNothing(checkpoint.flip.estimate),
+            numberOrNothing(checkpoint.estimate.estimate / checkpoint.relativeRmse.estimate)};
 }
 
 std::string tableText(const VariantSummary& variant) {
