@@ -13,8 +13,8 @@ CAMERA = (0.0, 2.2, 6.5)
 LAMPS = (0.0, 4.2, -0.4)  # the middle of their row, above the picture
 LAMP_POWER = 1.3  # radiance times area, of each
 LAMP_HALVES = [(-1.75, 0.14), (-0.85, 0.22), (0.25, 0.34), (1.6, 0.5)]  # where in the row, half of the side
-# GGX's alpha is the roughness squared: 0.005, 0.02, 0.05, 0.1. Heights and distances of the plates' middles.
-PLATES = [(0.0707, 1.30, 0.2), (0.1414, 0.85, 1.0), (0.2236, 0.48, 1.8), (0.3162, 0.20, 2.6)]
+# GGX's alpha is the roughness squared: 0.003, 0.01, 0.025, 0.05. Heights and distances of the plates' middles.
+PLATES = [(0.0548, 1.30, 0.2), (0.1, 0.85, 1.0), (0.1581, 0.48, 1.8), (0.2236, 0.20, 2.6)]
 
 
 def metal(gltf, name, roughness):
@@ -75,8 +75,8 @@ def glossy():
     gltf = Gltf("glossy")
     room(gltf, LARGE_LAMP)
     ball(gltf, "mirror ball", metal(gltf, "mirror", 0.0), 0.35, [0.45, 0.35, -0.25])
-    ball(gltf, "rough ball", metal(gltf, "rough metal", 0.3162), 0.25, [-0.05, 0.25, 0.55])
-    box = gltf.quads("box", metal(gltf, "brushed metal", 0.2236), box_quads((-1, -1, -1), (1, 1, 1)))
+    ball(gltf, "rough ball", metal(gltf, "rough metal", 0.2236), 0.25, [-0.05, 0.25, 0.55])
+    box = gltf.quads("box", metal(gltf, "brushed metal", 0.1414), box_quads((-1, -1, -1), (1, 1, 1)))
     # 1 cm deep in the floor, so that no light leaks in below.
     gltf.node("tall box", mesh=box, translation=[-0.45, 0.595, -0.35], rotation=about_y(22), scale=[0.28, 0.605, 0.28])
     return gltf, room_figures(24, 2, LARGE_LAMP[2])
