@@ -6,7 +6,6 @@ import csv
 import json
 import math
 import random
-import statistics
 import sys
 import time
 
@@ -19,6 +18,7 @@ COLUMNS = ["variant", "seed", "checkpoint", "samples_per_pixel", "rays", "device
            "mse", "rel_mse", "rel_mse_trimmed", "mae", "flip", "bias", "relative_rmse", "estimate"]
 REPLICATES = 8  # of each renderer's reference
 REFERENCE_SHARE = 0.35  # of a scene's time
+ISOLUX_SHARE = 0.6  # of that: errors of all whose images are equal are taken against Isolux's
 PILOT = 16  # samples a pixel of the render that costs and errors are foreseen from
 EQUAL = 0.005  # relative difference of means that is no difference yet
 # Seeds of what must be independent lie apart.
@@ -114,7 +114,8 @@ class SceneRun:
         costs = {name: cost for name, (cost, _) in pilots.items()}
         seconds = self.options.seconds
         present = {renderer: name for renderer, name in REFERENCES.items() if name in costs}
-        samples = {renderer: reference_samples(costs[name], seconds * REFERENCE_SHARE / len(present), REPLICATES)
+        share = {renderer: (1 - ISOLUX_SHARE) / max(1, len(present) - 1) for renderer in present} | {"isolux": ISOLUX_SHARE}
+        samples = {renderer: reference_samples(costs[name], seconds * REFERENCE_SHARE * share[renderer], REPLICATES)
                    for renderer, name in present.items()}
         self.take_references(samples)
         pairs = {renderer: halves(images) for renderer, images in self.images.items()}
@@ -199,8 +200,3 @@ class SceneRun:
         finally:
             self.close()
         return equality
-
-
-def median_setup(rows, variant):
-    values = [float(row["setup_seconds"]) for row in rows if row["variant"] == variant]
-    return statistics.median(values) if values else None

@@ -35,7 +35,7 @@ def equality_table(results):
 def seconds_text(entry):
     low, middle, high = entry["seconds"]
     if middle is None:
-        return f"not reached: {entry['reason']}" if entry["reason"] else "not reached"
+        return entry["reason"] or "not reached"
     spread = "" if low is None or high is None else f" [{low:.3g}, {high:.3g}]"
     return f"{middle:.3g} s{spread}{' (extrapolated)' if entry['extrapolated'] else ''}"
 
