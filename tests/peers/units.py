@@ -75,7 +75,8 @@ class Matrices(unittest.TestCase):
         turned = peers_scene.turned_about(matrix)
         self.assertClose([row[2] for row in turned], [-row[2] for row in matrix])
         self.assertClose([row[0] for row in turned], [-row[0] for row in matrix])
-        self.assertClose([row[1] for row in turned] + [row[3] for row in turned], [row[1] for row in matrix] + [row[3] for row in matrix])
+        for column in (1, 3):
+            self.assertClose([row[column] for row in turned], [row[column] for row in matrix])
         self.assertAlmostEqual(peers_scene.determinant(turned), 1.0, places=6)
 
 
@@ -212,6 +213,8 @@ class Plans(unittest.TestCase):
 
     def test_references_fit_their_time(self):
         self.assertEqual(peers_plan.reference_samples(0.01, 100.0, 8), 1024)
+        self.assertEqual(peers_plan.reference_samples(0.02, 100.0, 8), 256)
+        self.assertEqual(peers_plan.reference_samples(0.02, 100.0, 8, 2), 512)
         self.assertEqual(peers_plan.reference_samples(1.0, 1.0, 8), peers_plan.REFERENCE_LEAST)
 
 
@@ -245,7 +248,8 @@ class FakeRenderers:
 class Runs(unittest.TestCase):
     def run_scene(self, folder, rounds):
         options = types.SimpleNamespace(size=16, seconds=8.0, rounds=rounds, levels=2, only=[], equality=False)
-        run = peers_scene_run.SceneRun("cornell_box", scene_file("cornell_box"), pathlib.Path(folder), FakeRenderers(16), options)
+        path = scene_file("cornell_box")
+        run = peers_scene_run.SceneRun(path.stem, path, pathlib.Path(folder), FakeRenderers(16), options)
         return run, run.run()
 
     def test_a_run_goes_on_where_it_stopped_and_says_what_differs(self):
@@ -291,20 +295,24 @@ FIT = {"variants": [{"name": "isolux", "setupSeconds": 0.1, "slopeTime": [-1.1, 
                     {"name": "mitsuba llvm", "setupSeconds": 0.2, "slopeTime": [None, None, None],
                      "checkpoints": [{"samplesPerPixel": 64}],
                      "timeTo": [{"error": 0.05, "seconds": [0.9, 1.0, 1.1], "extrapolated": True, "reason": ""}]}],
-       "ratios": [{"faster": "mitsuba llvm", "slower": "isolux", "error": 0.05, "ratio": [1.6, 2.0, 2.5], "extrapolated": True}]}
+       "ratios": [{"faster": "mitsuba llvm", "slower": "isolux", "error": 0.05, "ratio": [1.6, 2.0, 2.5],
+                   "extrapolated": True}]}
 
 
 class Tables(unittest.TestCase):
     def test_times_and_ratios(self):
         lines = peers_table.times_table([{"scene": "glass", "fit": FIT}]).splitlines()
         self.assertEqual(lines[2], "| glass | isolux | 2 s [1.9, 2.1] | 1 | -1.00 | 0.1 s | 256 |")
-        self.assertEqual(lines[3], "| glass | mitsuba llvm | 1 s [0.9, 1.1] (extrapolated) | 0.5 [0.4, 0.62] of isolux |  | 0.2 s | 64 |")
+        self.assertEqual(lines[3], "| glass | mitsuba llvm | 1 s [0.9, 1.1] (extrapolated) | 0.5 [0.4, 0.62] of isolux |  "
+                                   "| 0.2 s | 64 |")
 
     def test_equality(self):
         found = {"relativeRmse": 0.01, "samplesPerPixel": 512}
-        other = {**found, "bias": [-0.001, 0.002, 0.005], "block": {"score": -3.0, "limit": 4.2, "relative": -0.02}, "differs": False}
+        block = {"score": -3.0, "limit": 4.2, "relative": -0.02}
+        other = {**found, "bias": [-0.001, 0.002, 0.005], "block": block, "differs": False}
         lines = peers_table.equality_table([{"scene": "glass", "equality": {"isolux": found, "cycles": other}}]).splitlines()
-        self.assertEqual(lines[3], "| glass | cycles | +0.20 % [-0.10, +0.50] | -2.0 %, 3.0 σ | 4.2 σ | 1.00 % (512 samples) | Isolux's |")
+        self.assertEqual(lines[3], "| glass | cycles | +0.20 % [-0.10, +0.50] | -2.0 %, 3.0 σ | 4.2 σ "
+                                   "| 1.00 % (512 samples) | Isolux's |")
 
 
 if __name__ == "__main__":

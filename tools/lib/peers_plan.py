@@ -35,7 +35,7 @@ def plan(costs, errors, spp, seconds, count):
     return tops
 
 
-def reference_samples(cost, seconds, replicates):
-    """The most for one of as many images as take so long."""
+def reference_samples(cost, seconds, replicates, base=4):
+    """The most, of powers of `base`, for one of as many images as take so long."""
     wanted = max(1.0, seconds / (cost * replicates))
-    return min(REFERENCE_MOST, max(REFERENCE_LEAST, 4 ** math.floor(math.log(wanted, 4) + 1e-9)))
+    return min(REFERENCE_MOST, max(REFERENCE_LEAST, base ** math.floor(math.log(wanted, base) + 1e-9)))

@@ -70,8 +70,9 @@ class Isolux:
 
     def __init__(self, program, scene, folder, sampler, size):
         self.image, self.report = folder / "isolux.exr", folder / "isolux.json"
-        self.command = [str(program), "render", str(scene), "-q", "--size", f"{size}x{size}", "--pixel-sampler", sampler, "--aov",
-                        "none", "--cache-dir", str(folder / "cache"), "-o", str(self.image), "--json", str(self.report)]
+        self.command = [str(program), "render", str(scene), "-q", "--size", f"{size}x{size}", "--pixel-sampler", sampler,
+                        "--aov", "none", "--cache-dir", str(folder / "cache"), "-o", str(self.image),
+                        "--json", str(self.report)]
 
     def render(self, spp, seed):
         result = subprocess.run([*self.command, "--spp", str(spp), "--seed", str(seed)], capture_output=True, text=True,
@@ -155,10 +156,21 @@ def blender():
 
 
 class Renderers:
-    """Opens variants for a scene. Whether a renderer is there is found out once."""
+    """Opens variants for a scene."""
 
     def __init__(self, program, folder, size):
         self.program, self.folder, self.size = program, folder, size
+        self.python = None  # that has Mitsuba, or the reason why there is none: found out once
+
+    def mitsuba(self):
+        if self.python is None:
+            try:
+                self.python = mitsuba_python(self.folder)
+            except Missing as error:
+                self.python = error
+        if isinstance(self.python, Missing):
+            raise self.python
+        return self.python
 
     def start(self, variant, scene, folder):
         """`folder` holds the exported scene. Raises Missing."""
@@ -166,8 +178,9 @@ class Renderers:
             return Isolux(self.program, scene, folder, *variant.settings, self.size)
         if variant.renderer == "mitsuba":
             backend, sampler = variant.settings
-            command = [mitsuba_python(self.folder), LIB / "peers_mitsuba.py", backend, THREADS, folder, sampler, self.size]
-            return Worker(variant.name, [str(word) for word in command], folder, {"DRJIT_LIBLLVM_PATH": llvm_library()})
+            environment = {"DRJIT_LIBLLVM_PATH": llvm_library()} if backend.startswith("llvm") else {}
+            command = [self.mitsuba(), LIB / "peers_mitsuba.py", backend, THREADS, folder, sampler, self.size]
+            return Worker(variant.name, [str(word) for word in command], folder, environment)
         command = [blender(), "-b", "--factory-startup", "--python-exit-code", "1", "--python", LIB / "peers_cycles.py", "--",
                    THREADS, folder, *variant.settings, self.size]
         return Worker(variant.name, [str(word) for word in command], folder, {})

@@ -163,7 +163,9 @@ def facing(indices, matrix):
     """A mirrored mesh runs the other way round (glTF 2.0, 3.7.4)."""
     if determinant(matrix) > 0:
         return array.array("I", indices)
-    return array.array("I", [corner for at in range(0, len(indices), 3) for corner in (indices[at], indices[at + 2], indices[at + 1])])
+    out = array.array("I", indices)
+    out[1::3], out[2::3] = out[2::3], out[1::3]
+    return out
 
 
 class Numbers:

@@ -19,6 +19,7 @@ COLUMNS = ["variant", "seed", "checkpoint", "samples_per_pixel", "rays", "device
 REPLICATES = 8  # of each renderer's reference
 REFERENCE_SHARE = 0.35  # of a scene's time
 ISOLUX_SHARE = 0.6  # of that: errors of all whose images are equal are taken against Isolux's
+SAMPLE_BASE = {"isolux": 2, "mitsuba": 4, "cycles": 2}  # multi-jittered points want squares
 PILOT = 16  # samples a pixel of the render that costs and errors are foreseen from
 EQUAL = 0.005  # relative difference of means that is no difference yet
 # Seeds of what must be independent lie apart.
@@ -56,9 +57,12 @@ class SceneRun:
                 warm = 0.0 if variant.renderer == "isolux" else max(0.0, first.seconds - second.seconds)
                 self.setup[variant.name] = second.setup + warm
             except (Missing, Failed) as error:
+                if variant.renderer == "isolux":
+                    raise
                 self.missing[variant.name] = str(error)
-                self.open.pop(variant.name, None)
-        return [variant for variant in VARIANTS if variant.name in self.open]
+                if variant.name in self.open:
+                    self.open.pop(variant.name).close()
+        return [variant for variant in VARIANTS if variant.name in self.open and REFERENCES[variant.renderer] in self.open]
 
     def close(self):
         for renderer in self.open.values():
@@ -104,7 +108,7 @@ class SceneRun:
     # --- times
 
     def prepared(self, variants):
-        """What was planned once holds until the folder is deleted: seeds and levels must fit together."""
+        """What was planned once holds, because rounds and levels must fit together, unless another variant has come."""
         path = self.folder / "plan.json"
         if path.exists():
             found = json.loads(path.read_text())
@@ -115,7 +119,8 @@ class SceneRun:
         seconds = self.options.seconds
         present = {renderer: name for renderer, name in REFERENCES.items() if name in costs}
         share = {renderer: (1 - ISOLUX_SHARE) / max(1, len(present) - 1) for renderer in present} | {"isolux": ISOLUX_SHARE}
-        samples = {renderer: reference_samples(costs[name], seconds * REFERENCE_SHARE * share[renderer], REPLICATES)
+        samples = {renderer: reference_samples(costs[name], seconds * REFERENCE_SHARE * share[renderer], REPLICATES,
+                                               SAMPLE_BASE[renderer])
                    for renderer, name in present.items()}
         self.take_references(samples)
         pairs = {renderer: halves(images) for renderer, images in self.images.items()}
@@ -123,6 +128,7 @@ class SceneRun:
                  for variant in variants}
         tops = plan(costs, start, PILOT, seconds * (1 - REFERENCE_SHARE) / self.options.rounds, self.options.levels)
         found = {"samples": samples, "tops": tops, "costs": costs, "pilotErrors": start}
+        (self.folder / "rows.csv").unlink(missing_ok=True)
         write(path, json.dumps(found, indent=1) + "\n")
         return found
 
@@ -172,7 +178,8 @@ class SceneRun:
             wanted = {row["checkpoint"] for row in own}
             seeds = [seed for seed in sorted({row["seed"] for row in own}, key=int)
                      if {row["checkpoint"] for row in own if row["seed"] == seed} == wanted]
-            kept += sorted((row for row in own if row["seed"] in seeds), key=lambda row: (int(row["seed"]), int(row["checkpoint"])))
+            whole = [row for row in own if row["seed"] in seeds]
+            kept += sorted(whole, key=lambda row: (int(row["seed"]), int(row["checkpoint"])))
         return kept
 
     def write_csv(self):
@@ -189,9 +196,10 @@ class SceneRun:
             for name, reason in self.missing.items():
                 say(f"{self.name}: without {name}: {reason}")
             found = self.prepared(variants)
+            samples = {renderer: spp for renderer, spp in found["samples"].items() if REFERENCES[renderer] in self.open}
             if not self.images:
-                self.take_references(found["samples"])
-            equality = self.equality(found["samples"])
+                self.take_references(samples)
+            equality = self.equality(samples)
             write(self.folder / "equality.json", json.dumps(equality, indent=1) + "\n")
             own = {renderer: renderer if entry.get("differs") else "isolux" for renderer, entry in equality.items()}
             pairs = {renderer: halves(self.images[source]) for renderer, source in own.items()}

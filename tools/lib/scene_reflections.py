@@ -50,7 +50,8 @@ def add_lamp(gltf, number, x, half):
     normal = towards(centre, (x, 0.7, 1.4))
     side = (half, 0.0, 0.0)
     up = [half * c for c in cross(normal, (1.0, 0.0, 0.0))]
-    corners = [[round(c + s * a + t * b, 6) for c, a, b in zip(centre, side, up)] for s, t in [(-1, -1), (1, -1), (1, 1), (-1, 1)]]
+    corners = [[round(c + s * a + t * b, 6) for c, a, b in zip(centre, side, up)]
+               for s, t in [(-1, -1), (1, -1), (1, 1), (-1, 1)]]
     radiance = LAMP_POWER / (4 * half * half)
     material = gltf.material(f"lamp {number}", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), round(radiance, 6))
     gltf.node(f"lamp {number}", mesh=gltf.quads(f"lamp {number}", material, [corners]))
