@@ -52,13 +52,14 @@ class Variant:
         return "isolux" if self.settings[-1] == "independent" else "isolux sobol"
 
 
-# Cycles has no independent samples. `REFERENCES` renders what a renderer's images converge to.
+# Cycles has no independent samples. The first of `REFERENCES` that is there renders what a renderer's images converge to.
 VARIANTS = [Variant("isolux", "isolux", ("independent",)), Variant("isolux sobol", "isolux", ("sobol",)),
             Variant("mitsuba llvm", "mitsuba", ("llvm_ad_rgb", "independent")),
             Variant("mitsuba llvm multijitter", "mitsuba", ("llvm_ad_rgb", "multijitter")),
             Variant("mitsuba scalar", "mitsuba", ("scalar_rgb", "independent")),
             Variant("cycles pmj", "cycles", ("PROGRESSIVE_MULTI_JITTER",)), Variant("cycles sobol", "cycles", ("SOBOL",))]
-REFERENCES = {"isolux": "isolux sobol", "mitsuba": "mitsuba llvm multijitter", "cycles": "cycles sobol"}
+REFERENCES = {"isolux": ["isolux sobol"], "mitsuba": ["mitsuba llvm multijitter", "mitsuba llvm", "mitsuba scalar"],
+              "cycles": ["cycles sobol", "cycles pmj"]}
 
 
 def interleaved(pixels):

@@ -62,13 +62,18 @@ class SceneRun:
                 self.missing[variant.name] = str(error)
                 if variant.name in self.open:
                     self.open.pop(variant.name).close()
-        return [variant for variant in VARIANTS if variant.name in self.open and REFERENCES[variant.renderer] in self.open]
+        return [variant for variant in VARIANTS if variant.name in self.open]
 
     def close(self):
         for renderer in self.open.values():
             renderer.close()
 
     # --- references
+
+    def sources(self):
+        """The variant that renders the references of each renderer that is there."""
+        found = {renderer: [name for name in names if name in self.open] for renderer, names in REFERENCES.items()}
+        return {renderer: names[0] for renderer, names in found.items() if names}
 
     def pilot(self, variants):
         """Seconds of a sample a pixel, and the image."""
@@ -83,7 +88,7 @@ class SceneRun:
         for number in range(REPLICATES):
             path = self.folder / "references" / f"{renderer}-{spp}-{number}.f32"
             if not path.exists():
-                image = self.open[REFERENCES[renderer]].render(spp, REFERENCE_SEED + number).image
+                image = self.open[self.sources()[renderer]].render(spp, REFERENCE_SEED + number).image
                 path.with_suffix(".part").write_bytes(image.tobytes())
                 path.with_suffix(".part").replace(path)
             found.append(array.array("f", path.read_bytes()))
@@ -117,7 +122,7 @@ class SceneRun:
         pilots = self.pilot(variants)
         costs = {name: cost for name, (cost, _) in pilots.items()}
         seconds = self.options.seconds
-        present = {renderer: name for renderer, name in REFERENCES.items() if name in costs}
+        present = self.sources()
         share = {renderer: (1 - ISOLUX_SHARE) / max(1, len(present) - 1) for renderer in present} | {"isolux": ISOLUX_SHARE}
         samples = {renderer: reference_samples(costs[name], seconds * REFERENCE_SHARE * share[renderer], REPLICATES,
                                                SAMPLE_BASE[renderer])
@@ -196,7 +201,7 @@ class SceneRun:
             for name, reason in self.missing.items():
                 say(f"{self.name}: without {name}: {reason}")
             found = self.prepared(variants)
-            samples = {renderer: spp for renderer, spp in found["samples"].items() if REFERENCES[renderer] in self.open}
+            samples = {renderer: spp for renderer, spp in found["samples"].items() if renderer in self.sources()}
             if not self.images:
                 self.take_references(samples)
             equality = self.equality(samples)
