@@ -1,6 +1,7 @@
 #include "app/converge_output.h"
 
 #include "app/output.h"
+#include "app/revision.h"
 #include "report/flip.h"
 #include "report/format.h"
 #include "report/run_report.h"
@@ -58,6 +59,12 @@ void addDevice(ordered_json& json, const Device* device) {
 
 } // namespace
 
+/// Null if it is not known.
+ordered_json revision() {
+    const std::string name = sourceRevision();
+    return name.empty() ? ordered_json() : ordered_json(name);
+}
+
 ordered_json describeScene(const ConvergeScene& scene, const Diagnostics& diagnostics,
                            const std::vector<ErrorSample>& samples, const ConvergenceReport& report) {
     const RenderSettings& settings = scene.run.settings;
@@ -69,7 +76,7 @@ ordered_json describeScene(const ConvergeScene& scene, const Diagnostics& diagno
     json["camera"] = scene.run.scene.cameras[settings.camera].name;
     json["maxDepth"] = depthOf(settings);
     json["version"] = ISOLUX_VERSION;
-    json["revision"] = nullptr;
+    json["revision"] = revision();
     addDevice(json, scene.device);
     json["seeds"] = seedsOf(samples);
     json["flip"] = scene.options.flipSeeds > 0 ? ordered_json{{"pixelsPerDegree", kPixelsPerDegree}} : ordered_json();
@@ -84,7 +91,7 @@ ordered_json describeFit(const ConvergeOptions& options, const std::vector<Error
     ordered_json json = heading();
     for (const char* unknown : {"scene", "sceneHash", "width", "height", "camera", "maxDepth"}) json[unknown] = nullptr;
     json["version"] = ISOLUX_VERSION;
-    json["revision"] = nullptr;
+    json["revision"] = revision();
     json["device"] = "";
     for (const char* unknown : {"driver", "driverVersion"}) json[unknown] = nullptr;
     json["seeds"] = seedsOf(samples);
