@@ -1,5 +1,6 @@
 // The command line: one subcommand a file, errors as one line, exit codes by core/error.h.
 #include "app/commands.h"
+#include "app/revision.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/platform.h"
@@ -12,9 +13,15 @@
 
 namespace {
 
+/// "isolux 0.1.0 (4f0c1d2e3a4b)"
+std::string versionText() {
+    const std::string revision = isolux::sourceRevision();
+    return "isolux " ISOLUX_VERSION + (revision.empty() ? "" : " (" + revision + ")");
+}
+
 int run(int argumentCount, char** arguments) {
     CLI::App app("Isolux: a Vulkan compute path tracer that measures itself.");
-    app.set_version_flag("--version", std::string("isolux ") + ISOLUX_VERSION);
+    app.set_version_flag("--version", versionText());
     app.require_subcommand(1);
     app.failure_message([](const CLI::App*, const CLI::Error& error) {
         return fmt::format("isolux: error: {} (--help lists what there is)\n", error.what());
@@ -24,10 +31,12 @@ int run(int argumentCount, char** arguments) {
                "  isolux scene scene.glb\n"
                "  isolux verify scene.glb\n"
                "  isolux compare image.exr reference.exr --max-relative-bias 0.01\n"
+               "  isolux converge scene.glb -o out --variant mis --variant 'light:--light-sampling light'\n"
                "`isolux COMMAND --help` shows a command's options.");
     isolux::ExitCode result = isolux::ExitCode::success;
     isolux::addRenderCommand(app, result);
     isolux::addCompareCommand(app, result);
+    isolux::addConvergeCommand(app, result);
     isolux::addVerifyCommand(app, result);
     isolux::addSceneCommand(app, result);
     isolux::addDevicesCommand(app, result);

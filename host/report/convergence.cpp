@@ -57,6 +57,12 @@ std::vector<double> column(const std::vector<const ErrorSample*>& samples, doubl
     return values;
 }
 
+/// Without those that were not taken: FLIP may be of some seeds alone.
+std::vector<double> known(std::vector<double> values) {
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    return values;
+}
+
 /// The root of the mean square over seeds, as the relative RMSE is: so that the two compare.
 Interval rootMeanSquare(std::vector<double> values) {
     for (double& value : values) value *= value;
@@ -81,7 +87,7 @@ CheckpointSummary summariseCheckpoint(const std::vector<const ErrorSample*>& sam
     summary.relMse = average(&ErrorSample::relMse);
     summary.relMseTrimmed = average(&ErrorSample::relMseTrimmed);
     summary.mae = average(&ErrorSample::mae);
-    summary.flip = average(&ErrorSample::flip);
+    summary.flip = meanInterval(known(column(samples, &ErrorSample::flip)));
     summary.bias = widened(average(&ErrorSample::bias), reference.relativeBiasError); // it is one for all seeds
     summary.relativeRmse = scaled(map(summary.mse, signedRoot), 1.0 / referenceMean);
     summary.estimate = rootMeanSquare(column(samples, &ErrorSample::estimate));

@@ -37,7 +37,8 @@ TEST_P(ProjectScene, LoadsWithTheExpectedFigures) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Load, ProjectScene,
-                         ::testing::Values("cornell_box", "cornell_spheres", "courtyard", "furnace", "materials"),
+                         ::testing::Values("cornell_box", "cornell_spheres", "courtyard", "furnace", "glass", "glossy",
+                                           "materials", "veach_mis"),
                          [](const auto& instance) { return instance.param; });
 
 /// World-space corners of every triangle of the instance named so.
