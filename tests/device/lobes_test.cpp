@@ -171,8 +171,8 @@ SingleScattering singleScattering(const LobeKernel& kernel, std::size_t lobe, co
     const DeviceLobe& surface = kernel.lobe(lobe);
     const Vec3f wi(query.incoming);
     const bool glass = surface.material.transmission > 0.0;
-    const Vec3d compensation =
-        glass ? Vec3d(answer.compensation.x) : 1.0 + surface.material.baseColor * double(answer.compensation.y);
+    const double boost = 1.0 / reflectionAlbedoAt(double(query.outgoing.z), surface.alpha()) - 1.0;
+    const Vec3d compensation = glass ? Vec3d(answer.compensation.x) : 1.0 + surface.material.baseColor * boost;
     const double scaling = surface.isSolid() && wi.z < 0.0f ? surface.eta() : 1.0;
     const Vec3d factor = scaling / (std::abs(double(wi.z)) * compensation);
     const Vec3d rounding = evaluateRounded(kernel, lobe, Vec3f(query.outgoing), wi).value;
