@@ -103,14 +103,19 @@ std::vector<DeviceLobe> whiteLobes(double alpha) {
                                   {"plastic", dielectric(alpha, 1.5, white)},
                                   {"dense plastic", dielectric(alpha, 2.4, white)},
                                   {"thin glass", thinGlass(alpha, white)}};
-    for (const double share : {0.25, 0.5, 0.75}) {
-        lobes.push_back({"partly metal", dielectric(alpha, 1.5, white)});
-        lobes.back().material.metallic = share;
-    }
     for (const double ior : {1.1, 1.5, 2.4})
         for (const Side side : {Side::front, Side::back})
             lobes.push_back({side == Side::front ? "glass from outside" : "glass from inside",
                              solidGlass(alpha, ior, white), side});
+    return lobes;
+}
+
+std::vector<DeviceLobe> partlyMetalLobes(double alpha) {
+    std::vector<DeviceLobe> lobes;
+    for (const double share : {0.25, 0.5, 0.75}) {
+        lobes.push_back({"metallic " + std::to_string(share), dielectric(alpha, 1.5, Vec3d(1.0))});
+        lobes.back().material.metallic = share;
+    }
     return lobes;
 }
 
