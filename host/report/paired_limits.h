@@ -12,7 +12,7 @@ namespace isolux {
 /// anyway, are no mistakes; but if they are many, only the mean can tell whether the branches were taken rightly, and
 /// it must be known well enough to do so.
 struct PairedLimits {
-    double agreement = 0.999; ///< share of lit pixels within the tolerance for which nothing more is asked of the mean
+    double agreement = 0.98; ///< share of lit pixels within the tolerance for which nothing more is asked of the mean
     double relativeBias = 1e-4; ///< of the mean luminance
 };
 
