@@ -37,21 +37,12 @@ double brightestTexel(const Environment& environment) {
     return brightest;
 }
 
-DeviceSpace chooseSpace(const Box3d& bounds) {
-    DeviceSpace space;
-    if (bounds.empty()) return space;
-    space.center = bounds.center();
-    const double halfExtent = 0.5 * maxComponent(bounds.extent());
-    if (halfExtent > 0.0) space.scale = std::exp2(-std::ceil(std::log2(halfExtent)));
-    return space;
-}
-
 class Packer {
 public:
     Packer(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features)
         : scene_(scene), settings_(settings), features_(features), materials_(effectiveMaterials(scene)),
           lights_(buildLightTable(scene, settings)) {
-        packed_.space = chooseSpace(worldBounds(scene));
+        packed_.space = chooseSpace(scene);
         const double brightest = brightestLight();
         if (brightest > 0.0) packed_.radianceScale = std::exp2(-std::ceil(std::log2(brightest)));
     }
@@ -87,22 +78,15 @@ private:
     }
 
     void addInstance(const Instance& instance) {
-        const Mesh& mesh = scene_.meshes[instance.mesh];
         beginObject();
-        const bool mirrored = glm::determinant(Mat3d(instance.worldFromObject)) < 0.0;
-        std::vector<Vec3f> positions(mesh.positions.size());
-        for (std::size_t i = 0; i < positions.size(); ++i)
-            positions[i] = Vec3f(packed_.space.fromWorld(transformPoint(instance.worldFromObject, mesh.positions[i])));
-        for (auto triangle : mesh.triangles) {
-            // A mirrored instance shows its front where the vertices run clockwise; turned round, they do not.
-            if (mirrored) std::swap(triangle[1], triangle[2]);
-            addTriangle({positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]}, mesh.material);
-        }
+        const std::uint32_t material = scene_.meshes[instance.mesh].material;
+        for (const TriangleCorners& corners : deviceTriangles(scene_, instance, packed_.space))
+            addTriangle(corners, material);
     }
 
     void beginObject() { packed_.firstOfObject.push_back(static_cast<std::uint32_t>(primitives_.records.size())); }
 
-    void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
+    void addTriangle(const TriangleCorners& p, std::uint32_t material) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
         primitives_.records.push_back({word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])),
                                        word(p[2], asFloat(id | surfaceBits(material)))});

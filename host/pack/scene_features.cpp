@@ -1,5 +1,6 @@
 #include "pack/scene_features.h"
 
+#include "pack/coincident.h"
 #include "pack/effective_materials.h"
 #include "scene/lights.h"
 
@@ -35,6 +36,7 @@ constexpr auto kNamed = std::to_array<NamedFeature>({
     {"alpha-blend", &SceneFeatures::alphaBlend},
     {"unlit", &SceneFeatures::unlit},
     {"back-face-culling", &SceneFeatures::backFaceCulling},
+    {"coincident", &SceneFeatures::coincident},
 });
 
 bool usesMap(const Material& material, MapSlot slot) { return material.map(slot).present(); }
@@ -112,6 +114,7 @@ public:
         for (std::size_t i = 0; i < all.size(); ++i)
             if (used[i]) materials_.push_back(all[i]);
         findGeometry();
+        findCoincidence();
         findLights();
         findRoulette();
         for (const SurfaceFeature& feature : kOfSurfaces) findOnSurfaces(feature);
@@ -155,6 +158,16 @@ private:
              fmt::format("{} of {} placed meshes have vertex normals", smooth, scene_.instances.size()));
         const bool colors = hasVertexColors(scene_);
         note(&SceneFeatures::vertexColors, colors, colors ? "some are not white" : "no mesh has any but white");
+    }
+
+    /// Where the search gives up the kernels ask: that is right everywhere.
+    void findCoincidence() {
+        const CoincidentTriangles triangles = findCoincident(deviceTriangles(scene_));
+        const auto& [a, b] = triangles.pair;
+        note(&SceneFeatures::coincident, triangles.outcome != Coincidence::none,
+             triangles.outcome == Coincidence::found  ? fmt::format("triangles {} and {} lie at the same spot", a, b)
+             : triangles.outcome == Coincidence::none ? "no two triangles overlap in a plane"
+                                                      : "too many triangles lie close together to tell");
     }
 
     [[nodiscard]] bool hasKind(LightKind kind) const {

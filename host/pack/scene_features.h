@@ -41,6 +41,7 @@ struct SceneFeatures {
     bool alphaBlend = true;
     bool unlit = true;
     bool backFaceCulling = true; ///< some surface has no back
+    bool coincident = true;      ///< some triangles lie at the same spot
 
     friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };

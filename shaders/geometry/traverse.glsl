@@ -15,6 +15,7 @@ layout(constant_id = 24) const bool kTraversalCounts = false;
 layout(constant_id = 40) const bool kAlphaMask = true;
 layout(constant_id = 41) const bool kAlphaBlend = true;
 layout(constant_id = 43) const bool kBackFaceCulling = true;
+layout(constant_id = 44) const bool kCoincident = true; // triangles at the same spot: some lie in the plane of another
 
 const bool kCutouts = kAlphaMask || kAlphaBlend; // some surfaces are not everywhere there
 
@@ -159,7 +160,7 @@ void testPrimitive(uint index, Query query, RayTransform transform, inout Traver
         TriangleHit hit = intersectTriangle(p0, p1, p2, query.ray, transform);
         distance = hit.distance;
         barycentric = vec3(hit.b0, hit.b1, 1.0 - hit.b0 - hit.b1);
-        ignored = ignored || liesIn(query.plane, p0, p1, p2);
+        if (kCoincident) ignored = ignored || liesIn(query.plane, p0, p1, p2);
     }
     bool nearer = !ignored && comesBefore(distance, idOf(primitive), state);
     if (kBackFaceCulling && nearer && (floatBitsToUint(primitive.p2Id.w) & kCulledBackBit) != 0u)
