@@ -30,12 +30,21 @@ void requireComparable(const Film& film, const Film& reference) {
 
 bool isLit(const PairedPixel& pixel) { return pixel.value != Vec3d(0.0) || pixel.reference != Vec3d(0.0); }
 
-Explanation explain(const PairedPixel& pixel, const PairedOptions& options, std::size_t index) {
+/// Whether a film in single precision errs in a pixel so much that rounding explains the difference there.
+bool errsAsMuch(const PixelStatistics& single, const PixelStatistics& reference, double difference) {
+    const bool otherBranch = single.pathSignature != 0 && single.pathSignature != reference.pathSignature;
+    return !otherBranch && difference <= kRoundingFactor * relativeDifference(single.mean, reference.mean);
+}
+
+Explanation explain(const PairedPixel& pixel, const PixelStatistics& reference, const PairedOptions& options,
+                    std::size_t index) {
     if (pixel.relativeDifference <= options.tolerance) return Explanation::withinTolerance;
     if (pixel.signature == Signature::different) return Explanation::otherBranch;
-    if (options.singlePrecision == nullptr) return Explanation::none;
-    const double rounding = relativeDifference(options.singlePrecision->pixels[index].mean, pixel.reference);
-    return pixel.relativeDifference <= kRoundingFactor * rounding ? Explanation::rounding : Explanation::none;
+    const bool rounding =
+        std::any_of(options.singlePrecision.begin(), options.singlePrecision.end(), [&](const Film& single) {
+            return errsAsMuch(single.pixels[index], reference, pixel.relativeDifference);
+        });
+    return rounding ? Explanation::rounding : Explanation::none;
 }
 
 PairedPixel makePixel(const Film& film, const Film& reference, const PairedOptions& options, std::size_t index) {
@@ -48,7 +57,7 @@ PairedPixel makePixel(const Film& film, const Film& reference, const PairedOptio
     pixel.reference = b.mean;
     pixel.relativeDifference = relativeDifference(a.mean, b.mean);
     pixel.signature = a.pathSignature == b.pathSignature ? Signature::same : Signature::different;
-    pixel.explanation = explain(pixel, options, index);
+    pixel.explanation = explain(pixel, b, options, index);
     return pixel;
 }
 
@@ -134,7 +143,7 @@ double relativeDifference(const Vec3d& value, const Vec3d& reference) {
 
 PairedDifferences pairedDifferences(const Film& film, const Film& reference, const PairedOptions& options) {
     requireComparable(film, reference);
-    if (options.singlePrecision != nullptr) requireComparable(*options.singlePrecision, reference);
+    for (const Film& single : options.singlePrecision) requireComparable(single, reference);
     PairedDifferences result;
     result.tolerance = options.tolerance;
     result.pixelCount = film.pixels.size();

@@ -8,6 +8,14 @@ std::size_t primitiveCount(const Scene& scene) {
     return count;
 }
 
+Scene moved(Scene scene, const Vec3d& by) {
+    for (Instance& instance : scene.instances) instance.worldFromObject[3] += glm::dvec4(by, 0.0);
+    for (Sphere& sphere : scene.spheres) sphere.center += by;
+    for (Camera& camera : scene.cameras) camera.position += by;
+    for (PunctualLight& light : scene.punctualLights) light.position += by;
+    return scene;
+}
+
 Box3d worldBounds(const Scene& scene) {
     Box3d bounds;
     for (const Instance& instance : scene.instances)

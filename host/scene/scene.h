@@ -216,6 +216,9 @@ struct Scene {
 /// World-space bounds of all vertices and spheres; empty if there are none.
 [[nodiscard]] Box3d worldBounds(const Scene& scene);
 
+/// The same scene elsewhere: whatever has a place in it is moved alike. The image stays the same but for rounding.
+[[nodiscard]] Scene moved(Scene scene, const Vec3d& by);
+
 /// Half the diagonal of the world bounds: how large a disc lights from afar illuminate. Zero if there is nothing.
 [[nodiscard]] double worldRadius(const Scene& scene);
 

@@ -21,13 +21,13 @@ protected:
         options.signatures = PathSignatures::on;
         const Film film = render(scene, settings, options);
         const Film reference = renderReference(scene, settings, {Precision::doublePrecision, PathSignatures::on}, {});
-        const PairedDifferences differences = pairedDifferences(film, reference, {kTolerance, nullptr});
+        const PairedDifferences differences = pairedDifferences(film, reference, {kTolerance, {}});
         if (differences.differentSignatures == 0) {
             EXPECT_EQ(film.rays, reference.rays);
         }
         if (differences.unexplained == 0) return differences;
         const Film single = renderReference(scene, settings, {Precision::singlePrecision}, {});
-        return pairedDifferences(film, reference, {kTolerance, &single});
+        return pairedDifferences(film, reference, {kTolerance, std::span(&single, 1)});
     }
 
     void expectAgreement(const Scene& scene, const RenderSettings& settings, double agreement = kAgreement) {

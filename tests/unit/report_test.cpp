@@ -378,6 +378,32 @@ TEST(Paired, TellsRoundingBranchesAndMistakesApart) {
     EXPECT_EQ(toJson(result)["worst"][1]["sameSignature"], false);
 }
 
+/// A pixel far off in the film under test: explained if any of the films in single precision errs there, on the same
+/// branch, a hundredth of that or more.
+TEST(Paired, RoundingIsWhatAnyFilmInSinglePrecisionShows) {
+    const Film reference = uniformFilm(4, 2);
+    const auto planted = [&](double error) {
+        Film film = reference;
+        film.at(2, 1).mean *= 1.0 + error;
+        return film;
+    };
+    const auto unexplained = [&](const std::vector<Film>& singles) {
+        const PairedDifferences result = pairedDifferences(planted(0.02), reference, {1e-3, singles});
+        EXPECT_EQ(result.unexplained + result.rounding, 1u);
+        return result.unexplained;
+    };
+    EXPECT_EQ(unexplained({}), 1u);
+    EXPECT_EQ(unexplained({planted(1.9e-4)}), 1u);
+    EXPECT_EQ(unexplained({planted(1.9e-4), planted(0.0), planted(-1.9e-4)}), 1u) << "errors do not add up";
+    EXPECT_EQ(unexplained({planted(1.9e-4), planted(2.1e-4)}), 0u);
+    EXPECT_EQ(unexplained({planted(-2.1e-4), planted(0.0)}), 0u);
+    Film elsewhere = planted(0.5);
+    elsewhere.at(2, 1).pathSignature = 18;
+    EXPECT_EQ(unexplained({planted(0.0), elsewhere}), 1u);
+    elsewhere.at(2, 1).pathSignature = 0;
+    EXPECT_EQ(unexplained({elsewhere}), 0u) << "a film without signatures";
+}
+
 TEST(Paired, BlackPixelsCountOnlyWhereOneFilmIsLit) {
     Film reference = uniformFilm(2, 2);
     reference.at(0, 0).mean = reference.at(1, 1).mean = Vec3d(0.0);
@@ -446,6 +472,8 @@ TEST(Paired, FilmsMustFit) {
     Film other = uniformFilm(2, 2);
     other.at(1, 1).sampleCount = 5;
     EXPECT_THROW((void)pairedDifferences(other, uniformFilm(2, 2)), Error);
+    const std::vector<Film> singles{uniformFilm(2, 2), other};
+    EXPECT_THROW((void)pairedDifferences(uniformFilm(2, 2), uniformFilm(2, 2), {1e-3, singles}), Error);
 }
 
 } // namespace

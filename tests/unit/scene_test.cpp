@@ -30,6 +30,19 @@ TEST(Scene, CountsPrimitivesAndBounds) {
     EXPECT_TRUE(worldBounds(Scene{}).empty());
 }
 
+TEST(Scene, MovedAsAWhole) {
+    Scene scene = boxScaledBy(2.0);
+    scene.spheres.push_back({"ball", Vec3d(5.0, 0.0, 0.0), 1.0, 0});
+    scene.punctualLights.push_back({"lamp", PunctualKind::point, Vec3d(1.0, 2.0, 3.0)});
+    const Vec3d by(0.5, -2.0, 8.0);
+    const Scene elsewhere = moved(scene, by);
+    EXPECT_EQ(worldBounds(elsewhere).lower, worldBounds(scene).lower + by);
+    EXPECT_EQ(worldBounds(elsewhere).upper, worldBounds(scene).upper + by);
+    EXPECT_EQ(elsewhere.cameras[0].position, scene.cameras[0].position + by);
+    EXPECT_EQ(elsewhere.punctualLights[0].position, Vec3d(1.5, 0.0, 11.0));
+    EXPECT_EQ(elsewhere.spheres[0].center, Vec3d(5.5, -2.0, 8.0));
+}
+
 TEST(Scene, AFramedCameraSeesEverything) {
     for (const double scale : {1e-9, 1.0, 1e9}) {
         const Scene scene = boxScaledBy(scale);
