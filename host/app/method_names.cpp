@@ -87,6 +87,7 @@ std::vector<MethodChoice> methodsOf(const RenderSettings& settings) {
     list.note("pixel-filter", settings.filter.kind, usual.filter.kind);
     list.note("filter-radius", settings.filter.radius, defaultRadius(settings.filter.kind));
     noteCamera(list, settings);
+    list.note("back-faces", settings.backFaces, usual.backFaces);
     list.note("accel", settings.intersection.acceleration, usual.intersection.acceleration);
     list.note("leaf-size", settings.intersection.maxLeafSize, usual.intersection.maxLeafSize);
     list.note("triangle-test", settings.intersection.triangleTest, usual.intersection.triangleTest);

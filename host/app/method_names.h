@@ -63,6 +63,10 @@ template <>
 inline constexpr auto kChoices<TriangleTest> = std::to_array<NamedChoice<TriangleTest>>(
     {{"watertight", TriangleTest::watertight}, {"moller-trumbore", TriangleTest::mollerTrumbore}});
 
+template <>
+inline constexpr auto kChoices<BackFaces> = std::to_array<NamedChoice<BackFaces>>({{"shown", BackFaces::shown},
+                                                                                   {"culled", BackFaces::culled}});
+
 template <typename Enum> [[nodiscard]] std::string choiceName(Enum value) {
     for (const NamedChoice<Enum>& choice : kChoices<Enum>)
         if (choice.value == value) return choice.name;

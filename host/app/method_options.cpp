@@ -114,6 +114,10 @@ void addCamera(CLI::App& command, MethodOptions& options) {
 void addIntersection(CLI::App& command, MethodOptions& options) {
     constexpr const char* kGroup = "Intersection";
     IntersectionMethod& chosen = options.chosen.intersection;
+    addChoice(command, "--back-faces", options.chosen.backFaces)
+        ->group(kGroup)
+        ->description("Of surfaces that are not doubleSided: shown, or culled, as rasterisers do: rays pass through "
+                      "from behind. What transmits has two sides always");
     addChoice(command, "--accel", chosen.acceleration)
         ->group(kGroup)
         ->description("How rays find primitives: by testing all, or by a BVH split at the mean or by surface area");
@@ -235,6 +239,10 @@ void checkMethods(const RenderSettings& settings, const Scene& scene) {
     checkBlueNoise(settings);
     const std::vector<std::string> idle = idleMethods(settings, scene);
     if (!idle.empty()) spdlog::warn("{}: without effect beside the other options", fmt::join(idle, ", "));
+    const bool culls = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                   [](const Material& material) { return material.isSingleSided(); });
+    if (settings.backFaces == BackFaces::culled && !culls)
+        spdlog::warn("--back-faces culled: without effect, every material is double-sided or transmits");
 }
 
 } // namespace isolux

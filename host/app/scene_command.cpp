@@ -36,6 +36,7 @@ struct SceneReport {
     LightCounts lights;
     std::size_t triangles = 0;     ///< of all instances
     std::size_t meshTriangles = 0; ///< of all meshes once
+    std::size_t singleSidedMaterials = 0;
 };
 
 LightCounts countLights(const Scene& scene) {
@@ -62,6 +63,8 @@ SceneReport examine(const std::string& file, const EnvironmentOptions& environme
     report.lights = countLights(report.scene);
     report.triangles = primitiveCount(report.scene) - report.scene.spheres.size();
     for (const Mesh& mesh : report.scene.meshes) report.meshTriangles += mesh.triangles.size();
+    for (const Material& material : report.scene.materials)
+        if (material.isSingleSided()) ++report.singleSidedMaterials;
     return report;
 }
 
@@ -106,7 +109,8 @@ std::string contentText(const SceneReport& report) {
     text += formatLine("triangles", fmt::format("{}, in {} instances of {} meshes that hold {}", report.triangles,
                                                 scene.instances.size(), scene.meshes.size(), report.meshTriangles));
     if (!scene.spheres.empty()) text += formatLine("exact spheres", fmt::format("{}", scene.spheres.size()));
-    text += formatLine("materials", fmt::format("{}", scene.materials.size()));
+    text += formatLine("materials",
+                       fmt::format("{}, {} single-sided", scene.materials.size(), report.singleSidedMaterials));
     text += formatLine("lights", lightsText(report.lights));
     if (const auto environment = summariseEnvironment(scene, report.environment))
         text += formatLine("environment", toText(*environment));
@@ -175,6 +179,7 @@ ordered_json reportJson(const SceneReport& report) {
                       {"meshes", scene.meshes.size()},
                       {"instances", scene.instances.size()},
                       {"materials", scene.materials.size()},
+                      {"singleSidedMaterials", report.singleSidedMaterials},
                       {"lights", lightsJson(report.lights)}};
     const std::optional<EnvironmentSummary> environment = summariseEnvironment(scene, report.environment);
     json["environment"] = environment ? toJson(*environment) : ordered_json();

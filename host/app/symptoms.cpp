@@ -32,7 +32,7 @@ Vec3d latticeDirection(int index, int count) {
 }
 
 /// Inside a solid if one object's back faces are seen all around.
-CameraPlace placeOf(const Scene& scene, const Camera& camera) {
+CameraPlace placeOf(const Scene& scene, const Camera& camera, BackFaces backFaces) {
     constexpr int kProbes = 128;
     const World<double> world = flatten<double>(scene);
     const RayCaster<double> caster(world);
@@ -43,7 +43,9 @@ CameraPlace placeOf(const Scene& scene, const Camera& camera) {
         if (!hit) return CameraPlace::outside;
         const bool fromBehind = surfaceAt(world, ray, *hit).side() == Side::back;
         const std::uint32_t object = world.objectOf(hit->primitive);
-        if (!fromBehind || (around && *around != object)) return CameraPlace::outside;
+        const bool culled =
+            backFaces == BackFaces::culled && scene.materials[world.materialOf(hit->primitive)].isSingleSided();
+        if (!fromBehind || culled || (around && *around != object)) return CameraPlace::outside;
         around = object;
     }
     return CameraPlace::insideSolid;
@@ -65,7 +67,7 @@ ImageSymptoms gatherSymptoms(const Film& film, const SceneRun& run) {
     const std::size_t distant = run.scene.punctualLights.size() + (run.scene.environment.emits() ? 1 : 0);
     symptoms.lightCount = followed ? std::max(buildLightTable(run.scene).lights.size(), distant) : 1;
     symptoms.sceneSide = sideOf(run.scene, camera);
-    symptoms.cameraPlace = placeOf(run.scene, camera);
+    symptoms.cameraPlace = placeOf(run.scene, camera, run.settings.backFaces);
     return symptoms;
 }
 

@@ -9,7 +9,8 @@
 #include "core/log.h"
 #include "core/stopwatch.h"
 #include "reference/reference.h"
-#include "report/comparison.h"
+#include "report/format.h"
+#include "report/paired_limits.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -25,8 +26,7 @@ struct VerifyCommand {
     MethodOptions methods;
     FeatureOptions features;
     double tolerance = 1e-3;
-    double minAgreement = 0.999;
-    double maxRelativeBias = 1e-4;
+    PairedLimits limits;
     bool json = false;
 };
 
@@ -42,19 +42,18 @@ struct Outcome {
     std::size_t validationMessages = 0;
     Diagnostics diagnostics;
     std::vector<MethodChoice> methods;
-    std::string tests; ///< a ray, if they were counted
-    bool passed = false;
+    std::string tests;                 ///< a ray, if they were counted
+    std::vector<std::string> failures; ///< what the two disagree in; none: they agree
 };
 
 std::string testsText(const Film& film) { return formatTestsPerRay(film.boxTests, film.primitiveTests, film.rays); }
 
-bool passes(const Outcome& outcome, const VerifyCommand& command) {
-    const PairedDifferences& d = outcome.differences;
-    const double agreement =
-        d.litPixels == 0 ? 1.0 : static_cast<double>(d.withinTolerance) / static_cast<double>(d.litPixels);
-    return d.unexplained == 0 && agreement >= command.minAgreement &&
-           checkLimit(d.luminanceBias, command.maxRelativeBias) == Verdict::within && outcome.diagnostics.clean() &&
-           outcome.validationMessages == 0;
+std::vector<std::string> failuresOf(const Outcome& outcome, const PairedLimits& limits) {
+    std::vector<std::string> failures = exceededLimits(outcome.differences, limits);
+    if (!outcome.diagnostics.clean()) failures.push_back("faults: " + formatDiagnostics(outcome.diagnostics));
+    if (outcome.validationMessages > 0)
+        failures.push_back(fmt::format("{} validation messages", outcome.validationMessages));
+    return failures;
 }
 
 Film referenceFilm(const SceneRun& run, const VerifyCommand& command, Precision precision) {
@@ -111,7 +110,7 @@ std::optional<Outcome> compareBackends(const VerifyCommand& command) {
     outcome.diagnostics.merge(reference.diagnostics);
     explainBranches(outcome, renderer, run);
     outcome.validationMessages = device.validationMessages().size();
-    outcome.passed = passes(outcome, command);
+    outcome.failures = failuresOf(outcome, command.limits);
     return outcome;
 }
 
@@ -124,9 +123,8 @@ void printText(const Outcome& outcome) {
                    divergence.bounce);
     fmt::print("time          device {:.2f} s, reference {:.2f} s\n", outcome.deviceSeconds, outcome.referenceSeconds);
     if (!outcome.tests.empty()) fmt::print("tests a ray   {}\n", outcome.tests);
-    if (!outcome.diagnostics.clean()) fmt::print("diagnostics   not clean: render with --json to see the counts\n");
-    if (outcome.validationMessages > 0) fmt::print("validation    {} messages\n", outcome.validationMessages);
-    fmt::print("{}\n", outcome.passed ? "the two backends agree" : "THE TWO BACKENDS DISAGREE");
+    for (const std::string& failure : outcome.failures) fmt::print("disagreement  {}\n", failure);
+    fmt::print("{}\n", outcome.failures.empty() ? "the two backends agree" : "THE TWO BACKENDS DISAGREE");
 }
 
 void printJson(const Outcome& outcome) {
@@ -141,7 +139,8 @@ void printJson(const Outcome& outcome) {
             {{"x", pixel.x}, {"y", pixel.y}, {"sample", divergence.sample}, {"bounce", divergence.bounce}});
     json["validationMessages"] = outcome.validationMessages;
     json["diagnosticsClean"] = outcome.diagnostics.clean();
-    json["passed"] = outcome.passed;
+    json["failures"] = outcome.failures;
+    json["passed"] = outcome.failures.empty();
     fmt::print("{}\n", json.dump(2));
 }
 
@@ -152,7 +151,7 @@ ExitCode run(const VerifyCommand& command) {
         return ExitCode::interrupted;
     }
     command.json ? printJson(*outcome) : printText(*outcome);
-    return outcome->passed ? ExitCode::success : ExitCode::failure;
+    return outcome->failures.empty() ? ExitCode::success : ExitCode::failure;
 }
 
 } // namespace
@@ -167,16 +166,19 @@ void addVerifyCommand(CLI::App& app, ExitCode& result) {
     sub->add_option("--tolerance", command->tolerance, "Relative difference that rounding may cause in a pixel")
         ->check(finiteNumber())
         ->capture_default_str();
-    sub->add_option("--min-agreement", command->minAgreement, "Share of lit pixels that must be within it")
+    sub->add_option("--min-agreement", command->limits.agreement,
+                    "Share of lit pixels within it below which the mean must be known to agree")
         ->check(finiteNumber())
         ->capture_default_str();
-    sub->add_option("--max-relative-bias", command->maxRelativeBias, "Of the mean luminance")
+    sub->add_option("--max-relative-bias", command->limits.relativeBias, "Of the mean luminance")
         ->check(finiteNumber())
         ->capture_default_str();
     sub->add_flag("--json", command->json, "Print JSON");
     sub->footer(
         "Both backends take the same random numbers, so pixels agree to rounding unless rounding turned a path to\n"
-        "another branch; path signatures tell which. Exit code 0: they agree; 1: they do not.\n"
+        "another branch; path signatures tell which. The two agree if no pixel is unexplained and the interval of the\n"
+        "relative bias is not wholly beyond --max-relative-bias; if fewer pixels than --min-agreement are within the\n"
+        "tolerance, it must be wholly within. Exit code 0: they agree; 1: they do not, and a line says in what.\n"
         "Examples:\n"
         "  isolux verify scene.glb\n"
         "  isolux verify scene.glb --width 128 --spp 64 --seed 3\n"

@@ -19,21 +19,22 @@ using namespace std::string_view_literals;
 
 constexpr int kMostChannels = 4;
 
-/// An image format: its name and that of its MIME type, how it begins, and how many texels a byte can hold at most.
+/// An image format: its name and that of its MIME type, and how it begins.
 struct Format {
     const char* name;
     std::string_view mimeType;
     std::string_view start;
-    double texelsPerByte;
+    double bitsPerByte;   ///< of texels that a byte of the file can hold at most
+    double anyFileTexels; ///< what a file of any size may hold
 };
 
-/// PNG: a bit a texel at least, and deflate makes 1032 bytes of one at most (its longest match, 258 bytes, takes two
-/// bits). JPEG: 8 x 8 texels take a bit at least (one Huffman code each). Lossless WebP writes one colour with no bits
-/// at all, so that its size says nothing.
+/// Deflate makes 1032 bytes of one at most (its longest match, 258 bytes, takes two bits). JPEG: 8 x 8 texels take a
+/// bit at least (one Huffman code each). Lossless WebP writes one colour with no bits at all, so that its size says
+/// nothing; a small file is taken at its word for 64 MiB, a larger one is held to the densest PNG.
 constexpr std::array<Format, 3> kFormats = {{
-    {"png", "image/png", "\x89PNG\r\n\x1A\n"sv, 8.0 * 1032.0},
-    {"jpeg", "image/jpeg", "\xFF\xD8\xFF"sv, 8.0 * 64.0},
-    {"webp", "image/webp", "RIFF"sv, std::numeric_limits<double>::infinity()},
+    {"png", "image/png", "\x89PNG\r\n\x1A\n"sv, 8.0 * 1032.0, 0.0},
+    {"jpeg", "image/jpeg", "\xFF\xD8\xFF"sv, 8.0 * 64.0, 0.0},
+    {"webp", "image/webp", "RIFF"sv, 8.0 * 1032.0, 0x1p24},
 }};
 
 std::string_view asText(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
@@ -88,6 +89,16 @@ void requireWhole(const EncodedImage& image, const Format& format) {
     if (!isWhole) image.where.fail("its data is cut short or damaged");
 }
 
+/// Bits that a texel takes before compression, by depth and colour type of the header (PNG, 11.2.2); 1 for other
+/// formats.
+double bitsPerTexel(const EncodedImage& image, const Format& format) {
+    constexpr std::size_t kDepth = 24, kColorType = 25;
+    constexpr std::array<int, 7> kChannels = {1, 1, 3, 1, 2, 1, 4}; // 3: indices; 1 and 5 are none
+    if (format.mimeType != "image/png" || image.bytes.size() <= kColorType) return 1.0;
+    const std::size_t type = std::min<std::size_t>(image.bytes[kColorType], kChannels.size() - 1);
+    return std::max<int>(image.bytes[kDepth], 1) * kChannels[type];
+}
+
 /// OpenImageIO's own words, in one line.
 std::string reasonOf(const OIIO::ImageInput& input) { return printable(input.geterror()); }
 
@@ -99,7 +110,8 @@ void requireReasonableSize(const EncodedImage& image, const Format& format, std:
     const int largest = image.where.context().limits().imageSide;
     if (width > largest || height > largest) fail(fmt::format("at most {} a side are supported", largest));
     const double texels = static_cast<double>(width) * static_cast<double>(height);
-    if (texels > format.texelsPerByte * static_cast<double>(image.bytes.size()))
+    const double bits = format.bitsPerByte * static_cast<double>(image.bytes.size());
+    if (texels > std::max(bits / bitsPerTexel(image, format), format.anyFileTexels))
         fail(fmt::format("{} bytes cannot hold them", image.bytes.size()));
 }
 

@@ -37,21 +37,12 @@ double brightestTexel(const Environment& environment) {
     return brightest;
 }
 
-DeviceSpace chooseSpace(const Box3d& bounds) {
-    DeviceSpace space;
-    if (bounds.empty()) return space;
-    space.center = bounds.center();
-    const double halfExtent = 0.5 * maxComponent(bounds.extent());
-    if (halfExtent > 0.0) space.scale = std::exp2(-std::ceil(std::log2(halfExtent)));
-    return space;
-}
-
 class Packer {
 public:
     Packer(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features)
         : scene_(scene), settings_(settings), features_(features), materials_(effectiveMaterials(scene)),
           lights_(buildLightTable(scene, settings)) {
-        packed_.space = chooseSpace(worldBounds(scene));
+        packed_.space = chooseSpace(scene);
         const double brightest = brightestLight();
         if (brightest > 0.0) packed_.radianceScale = std::exp2(-std::ceil(std::log2(brightest)));
     }
@@ -87,32 +78,29 @@ private:
     }
 
     void addInstance(const Instance& instance) {
-        const Mesh& mesh = scene_.meshes[instance.mesh];
         beginObject();
-        const bool mirrored = glm::determinant(Mat3d(instance.worldFromObject)) < 0.0;
-        std::vector<Vec3f> positions(mesh.positions.size());
-        for (std::size_t i = 0; i < positions.size(); ++i)
-            positions[i] = Vec3f(packed_.space.fromWorld(transformPoint(instance.worldFromObject, mesh.positions[i])));
-        for (auto triangle : mesh.triangles) {
-            // A mirrored instance shows its front where the vertices run clockwise; turned round, they do not.
-            if (mirrored) std::swap(triangle[1], triangle[2]);
-            addTriangle({positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]}, mesh.material);
-        }
+        const std::uint32_t material = scene_.meshes[instance.mesh].material;
+        for (const TriangleCorners& corners : deviceTriangles(scene_, instance, packed_.space))
+            addTriangle(corners, material);
     }
 
     void beginObject() { packed_.firstOfObject.push_back(static_cast<std::uint32_t>(primitives_.records.size())); }
 
-    void addTriangle(const std::array<Vec3f, 3>& p, std::uint32_t material) {
+    void addTriangle(const TriangleCorners& p, std::uint32_t material) {
         const auto id = static_cast<std::uint32_t>(primitives_.records.size());
         primitives_.records.push_back({word(p[0], asFloat(material)), word(p[1], asFloat(lights_.lightOf[id])),
-                                       word(p[2], asFloat(id | alphaBit(material)))});
+                                       word(p[2], asFloat(id | surfaceBits(material)))});
         Box3f box;
         for (const Vec3f& vertex : p) box.extend(vertex);
         primitives_.boxes.push_back(box);
     }
 
-    [[nodiscard]] std::uint32_t alphaBit(std::uint32_t material) const {
-        return materials_[material].alphaMode == AlphaMode::opaque ? 0u : shared::kAlphaBit;
+    /// What rays that meet a primitive must ask: whether the surface is there, and whether its back is. The latter of
+    /// the material as the scene has it: a map that lets nothing through gives no back to cull.
+    [[nodiscard]] std::uint32_t surfaceBits(std::uint32_t material) const {
+        const bool covers = materials_[material].alphaMode == AlphaMode::opaque;
+        const bool culled = settings_.backFaces == BackFaces::culled && scene_.materials[material].isSingleSided();
+        return (covers ? 0u : shared::kAlphaBit) | (culled ? shared::kCulledBackBit : 0u);
     }
 
     void addSphere(const Sphere& sphere) {
@@ -122,7 +110,7 @@ private:
         const auto radius = static_cast<float>(sphere.radius * packed_.space.scale);
         primitives_.records.push_back(
             {word(center, asFloat(sphere.material)), word({radius, 0.0f, 0.0f}, asFloat(lights_.lightOf[id])),
-             word(Vec3f(0.0f), asFloat(id | shared::kSphereBit | alphaBit(sphere.material)))});
+             word(Vec3f(0.0f), asFloat(id | shared::kSphereBit | surfaceBits(sphere.material)))});
         Box3f box;
         for (int axis = 0; axis < 3; ++axis) {
             box.lower[axis] = std::nextafter(center[axis] - radius, -std::numeric_limits<float>::infinity());

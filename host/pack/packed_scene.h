@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/bvh.h"
+#include "pack/device_space.h"
 #include "pack/packed_environment.h"
 #include "pack/packed_materials.h"
 #include "pack/scene_features.h"
@@ -15,15 +16,6 @@
 #include <vector>
 
 namespace isolux {
-
-/// Device space is the world moved and scaled so that the scene fills [-1, 1]: float then has the same relative
-/// accuracy for every scene. The scale is a power of two, so scaling itself rounds nothing.
-struct DeviceSpace {
-    Vec3d center{0.0};
-    double scale = 1.0; ///< device length = scale * world length
-
-    [[nodiscard]] Vec3d fromWorld(const Vec3d& point) const { return (point - center) * scale; }
-};
 
 struct PackedScene {
     std::vector<shared::NodeRecord> nodes;

@@ -1,5 +1,6 @@
 #include "pack/scene_features.h"
 
+#include "pack/coincident.h"
 #include "pack/effective_materials.h"
 #include "scene/lights.h"
 
@@ -34,6 +35,8 @@ constexpr auto kNamed = std::to_array<NamedFeature>({
     {"alpha-mask", &SceneFeatures::alphaMask},
     {"alpha-blend", &SceneFeatures::alphaBlend},
     {"unlit", &SceneFeatures::unlit},
+    {"back-face-culling", &SceneFeatures::backFaceCulling},
+    {"coincident", &SceneFeatures::coincident},
 });
 
 bool usesMap(const Material& material, MapSlot slot) { return material.map(slot).present(); }
@@ -111,9 +114,11 @@ public:
         for (std::size_t i = 0; i < all.size(); ++i)
             if (used[i]) materials_.push_back(all[i]);
         findGeometry();
+        findCoincidence();
         findLights();
         findRoulette();
         for (const SurfaceFeature& feature : kOfSurfaces) findOnSurfaces(feature);
+        findCulledBacks(used);
     }
 
     [[nodiscard]] const SceneFeatures& features() const { return features_; }
@@ -155,6 +160,16 @@ private:
         note(&SceneFeatures::vertexColors, colors, colors ? "some are not white" : "no mesh has any but white");
     }
 
+    /// Where the search gives up the kernels ask: that is right everywhere.
+    void findCoincidence() {
+        const CoincidentTriangles triangles = findCoincident(deviceTriangles(scene_));
+        const auto& [a, b] = triangles.pair;
+        note(&SceneFeatures::coincident, triangles.outcome != Coincidence::none,
+             triangles.outcome == Coincidence::found  ? fmt::format("triangles {} and {} lie at the same spot", a, b)
+             : triangles.outcome == Coincidence::none ? "no two triangles overlap in a plane"
+                                                      : "too many triangles lie close together to tell");
+    }
+
     [[nodiscard]] bool hasKind(LightKind kind) const {
         return std::any_of(lights_.lights.begin(), lights_.lights.end(),
                            [&](const Light& light) { return light.kind == kind; });
@@ -193,6 +208,17 @@ private:
     void findOnSurfaces(const SurfaceFeature& feature) {
         const auto count = std::count_if(materials_.begin(), materials_.end(), feature.has);
         note(feature.flag, count > 0, fmt::format("{} of {} materials {}", count, materials_.size(), feature.having));
+    }
+
+    /// Of the materials as the scene has them, as Packer culls.
+    void findCulledBacks(const std::vector<bool>& used) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < used.size(); ++i)
+            if (used[i] && scene_.materials[i].isSingleSided()) ++count;
+        const bool culled = settings_.backFaces == BackFaces::culled;
+        note(&SceneFeatures::backFaceCulling, culled && count > 0,
+             culled ? fmt::format("{} of {} materials are single-sided", count, materials_.size())
+                    : "back faces are shown");
     }
 
     const Scene& scene_;

@@ -40,6 +40,8 @@ struct SceneFeatures {
     bool alphaMask = true;
     bool alphaBlend = true;
     bool unlit = true;
+    bool backFaceCulling = true; ///< some surface has no back
+    bool coincident = true;      ///< some triangles lie at the same spot
 
     friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };

@@ -27,10 +27,6 @@ template <typename Real> [[nodiscard]] Real schlickWeight(Real cosine) {
     return squared * squared * rest;
 }
 
-template <typename Real> [[nodiscard]] Vec3<Real> schlickFresnel(const Vec3<Real>& f0, Real f90, Real cosine) {
-    return f0 + (Vec3<Real>(f90) - f0) * schlickWeight(cosine);
-}
-
 /// The direction to which `wo` is mirrored at a plane with normal `h`.
 template <typename Real> [[nodiscard]] Vec3<Real> reflectAt(const Vec3<Real>& h, const Vec3<Real>& wo) {
     return 2 * glm::dot(wo, h) * h - wo;

@@ -17,14 +17,12 @@ template <typename Real> struct MaterialPoint {
     Real metal = 0;        ///< of the opaque part
     Real transmission = 0; ///< the share of the glass part
     Real alpha = 1;        ///< of GGX
-    Vec3<Real> f0{0};      ///< reflectance of the opaque part at normal incidence
+    Vec3<Real> f0{0};      ///< reflectance at normal incidence of what lies over the diffuse base, which is no metal
     Real f90 = 0;          ///< and at grazing
-    Vec3<Real> coatF0{0};  ///< the same of its share that is no metal: what lies over the diffuse base
-    Real coatF90 = 0;
     Real ior = 1;
     Body body = Body::wall;
 
-    [[nodiscard]] bool isLambertian() const { return transmission == 0 && f90 == 0 && f0 == Vec3<Real>(0); }
+    [[nodiscard]] bool isLambertian() const { return transmission == 0 && metal == 0 && f90 == 0; }
     [[nodiscard]] bool isSolid() const { return body == Body::solid; }
 };
 
@@ -33,17 +31,15 @@ template <typename Real> [[nodiscard]] Vec3<Real> baseAt(const Attributes<Real>&
     return own * Vec3<Real>(attributes.map(place, MapSlot::baseColor)) * Vec3<Real>(attributes.color(place));
 }
 
-/// F0 and F90 of the opaque part (KHR_materials_specular; Schlick 1994), once the rest is known.
+/// F0 and F90 of the dielectric (KHR_materials_specular; Schlick 1994), once the index is known.
 template <typename Real>
 void setReflectance(MaterialPoint<Real>& point, const Attributes<Real>& attributes, const Place<Real>& place) {
     const Material& material = attributes.materialAt(place);
     const Real specular = static_cast<Real>(material.specular) * attributes.map(place, MapSlot::specular).w;
     const auto color = Vec3<Real>(material.specularColor) * Vec3<Real>(attributes.map(place, MapSlot::specularColor));
     const Real root = (point.ior - 1) / (point.ior + 1);
-    point.coatF0 = specular * glm::min(root * root * color, Vec3<Real>(1));
-    point.coatF90 = specular;
-    point.f0 = glm::mix(point.coatF0, point.base, point.metal);
-    point.f90 = glm::mix(point.coatF90, Real(1), point.metal);
+    point.f0 = specular * glm::min(root * root * color, Vec3<Real>(1));
+    point.f90 = specular;
 }
 
 /// The material at a point of a primitive.

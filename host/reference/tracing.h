@@ -5,6 +5,7 @@
 #include "core/sample_sequence.h"
 #include "film/film.h"
 #include "reference/alpha.h"
+#include "reference/back_faces.h"
 #include "reference/camera.h"
 #include "reference/material_point.h"
 #include "reference/normal_map.h"
@@ -62,6 +63,7 @@ template <typename Real> class Tracing {
 public:
     Tracing(const Scene& scene, const World<Real>& world, const RenderSettings& settings, SideRule sides)
         : scene_(scene), world_(world), attributes_(scene, world), covered_(hasCoverage(scene)),
+          backFaces_(scene, world, settings.backFaces),
           sampler_(settings.sampler), plan_{settings.seed, cellBitsOf(settings)}, sides_(sides),
           camera_(scene.cameras[settings.camera], settings), caster_(world, settings.intersection) {}
 
@@ -80,7 +82,7 @@ public:
     findSurface(const Ray<Real>& ray, const std::optional<Presence<Real>>& presence, PathResult<Real>& result) const {
         ++result.rays;
         const std::optional<Hit<Real>> hit =
-            presence ? caster_.nearest(ray, result.tests, *presence) : caster_.nearest(ray, result.tests);
+            caster_.nearest(ray, result.tests, [&](const Place<Real>& place) { return isThere(ray, place, presence); });
         result.record(hit ? hit->primitive : kNoPrimitive);
         if (!hit) return std::nullopt;
         Surface<Real> surface = withNormalMap(surfaceAt(world_, ray, *hit), attributes_);
@@ -91,8 +93,8 @@ public:
     [[nodiscard]] Visibility visibility(const Ray<Real>& ray, std::uint32_t ignored,
                                         const std::optional<Presence<Real>>& presence, PathResult<Real>& result) const {
         ++result.rays;
-        const Visibility visibility = presence ? caster_.visibility(ray, ignored, result.tests, *presence)
-                                               : caster_.visibility(ray, ignored, result.tests);
+        const Visibility visibility = caster_.visibility(
+            ray, ignored, result.tests, [&](const Place<Real>& place) { return isThere(ray, place, presence); });
         result.record(visibility == Visibility::clear ? PathEvent::reached : PathEvent::blocked);
         return visibility;
     }
@@ -122,10 +124,16 @@ public:
     [[nodiscard]] Real depthOf(const Surface<Real>& surface) const { return camera_.depth(surface.position); }
 
 private:
+    [[nodiscard]] bool isThere(const Ray<Real>& ray, const Place<Real>& place,
+                               const std::optional<Presence<Real>>& presence) const {
+        return backFaces_.isThere(ray, place) && (!presence || (*presence)(place));
+    }
+
     const Scene& scene_;
     const World<Real>& world_;
     Attributes<Real> attributes_;
     bool covered_; ///< surfaces may not be there for some rays
+    BackFaceTest<Real> backFaces_;
     PixelSampler sampler_;
     SequencePlan plan_;
     SideRule sides_;

@@ -92,6 +92,8 @@ constexpr auto kFeatureConstants = std::to_array<std::pair<std::uint32_t, bool S
     {shared::kSpecAlphaMask, &SceneFeatures::alphaMask},
     {shared::kSpecAlphaBlend, &SceneFeatures::alphaBlend},
     {shared::kSpecUnlit, &SceneFeatures::unlit},
+    {shared::kSpecBackFaceCulling, &SceneFeatures::backFaceCulling},
+    {shared::kSpecCoincident, &SceneFeatures::coincident},
 });
 
 Specialization specializeFeatures(const SceneFeatures& features) {
@@ -115,7 +117,7 @@ PathRenderer::PathRenderer(const Device& device, const Scene& scene, const Rende
     };
     announce("building the BVH");
     Stopwatch packing;
-    statistics_.features = options.features.value_or(findFeatures(scene, settings));
+    statistics_.features = options.features ? *options.features : findFeatures(scene, settings);
     const PackedScene packed = packScene(scene, settings, statistics_.features);
     parameters_ = packParameters(packed, scene, settings);
     stackSize_ = packed.stackBound;

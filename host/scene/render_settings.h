@@ -58,6 +58,9 @@ enum class Acceleration { none, meanSplit, sah };
 
 enum class TriangleTest { watertight, mollerTrumbore };
 
+/// Whether surfaces that are not double-sided have a back. `culled`: they are not there for rays that meet it.
+enum class BackFaces { shown, culled };
+
 struct RouletteSettings {
     Roulette kind = Roulette::throughput;
     double termination = 0.3; ///< of Roulette::constant: the probability of ending, in [0.001, 0.999]
@@ -105,6 +108,7 @@ struct RenderSettings {
         1;                     ///< shadow rays a shading point: in all if lights are chosen, else to each area light
     RouletteSettings roulette; ///< `off` needs a maxDepth
     double ambientDistance = std::numeric_limits<double>::infinity(); ///< Integrator::ao: how far occluders matter
+    BackFaces backFaces = BackFaces::shown;
     IntersectionMethod intersection;
 };
 

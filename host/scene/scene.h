@@ -81,7 +81,7 @@ struct Material {
     Vec3d baseColor{
         1.0};            ///< albedo of the diffuse base, reflectance of a metal, tint of what is transmitted; in [0, 1]
     Vec3d emission{0.0}; ///< emitted radiance, W/(sr m^2), from the front face (and the back face if doubleSided)
-    bool doubleSided = false;  ///< the back face emits too; scattering is two-sided always
+    bool doubleSided = false;  ///< the back face emits too, and BackFaces::culled leaves it there
     double metallic = 0.0;     ///< in [0, 1]
     double roughness = 1.0;    ///< in [0, 1]; alpha of GGX is its square
     double ior = 1.5;          ///< index of refraction, at least 1 (KHR_materials_ior)
@@ -100,6 +100,8 @@ struct Material {
 
     [[nodiscard]] const TextureMap& map(MapSlot slot) const { return maps[static_cast<std::size_t>(slot)]; }
     [[nodiscard]] bool emits() const { return maxComponent(emission) > 0.0 && !unlit; }
+    /// Whether BackFaces::culled takes its back away: never of what transmits, for rays leave it through there.
+    [[nodiscard]] bool isSingleSided() const { return !doubleSided && transmission == 0.0; }
 };
 
 /// Triangles in object space, counter-clockwise seen from the front. Attributes have one entry a position, or none.

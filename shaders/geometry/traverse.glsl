@@ -14,6 +14,8 @@ layout(constant_id = 22) const bool kEveryPrimitive = false; // there is no BVH
 layout(constant_id = 24) const bool kTraversalCounts = false;
 layout(constant_id = 40) const bool kAlphaMask = true;
 layout(constant_id = 41) const bool kAlphaBlend = true;
+layout(constant_id = 43) const bool kBackFaceCulling = true;
+layout(constant_id = 44) const bool kCoincident = true; // triangles at the same spot: some lie in the plane of another
 
 const bool kCutouts = kAlphaMask || kAlphaBlend; // some surfaces are not everywhere there
 
@@ -48,6 +50,21 @@ uint idOf(uint primitive) { return primitive == kNone ? 0u : idOf(readPrimitive(
 
 // Whether the surface of a primitive with kAlphaBit is there, at barycentric coordinates of it; the kernel knows.
 bool surfaceIsThere(PrimitiveRecord primitive, uint index, vec3 barycentric, uint key);
+
+// Whether a ray meets a primitive's front. A triangle's normal is that of its surface, so that both agree on the side; of a
+// sphere the nearer crossing counts, which is on its front for a ray that starts outside.
+bool meetsFront(PrimitiveRecord primitive, Ray ray) {
+    bool front;
+    if (kSpheres && (floatBitsToUint(primitive.p2Id.w) & kSphereBit) != 0u) {
+        front = length(ray.origin - primitive.p0Material.xyz) > primitive.p1Light.x;
+    } else {
+        float area;
+        vec3 normal = triangleNormal(primitive.p0Material.xyz, primitive.p1Light.xyz, primitive.p2Id.xyz,
+                                     -ray.direction, area);
+        front = dot(ray.direction, normal) <= 0.0;
+    }
+    return front;
+}
 
 Traversal beginTraversal(float limit, uint nodeCount, uint primitiveCount) {
     stackItems[0] = 0u;
@@ -143,9 +160,11 @@ void testPrimitive(uint index, Query query, RayTransform transform, inout Traver
         TriangleHit hit = intersectTriangle(p0, p1, p2, query.ray, transform);
         distance = hit.distance;
         barycentric = vec3(hit.b0, hit.b1, 1.0 - hit.b0 - hit.b1);
-        ignored = ignored || liesIn(query.plane, p0, p1, p2);
+        if (kCoincident) ignored = ignored || liesIn(query.plane, p0, p1, p2);
     }
     bool nearer = !ignored && comesBefore(distance, idOf(primitive), state);
+    if (kBackFaceCulling && nearer && (floatBitsToUint(primitive.p2Id.w) & kCulledBackBit) != 0u)
+        nearer = meetsFront(primitive, query.ray);
     if (kCutouts && nearer && (floatBitsToUint(primitive.p2Id.w) & kAlphaBit) != 0u)
         nearer = surfaceIsThere(primitive, index, barycentric, query.alphaKey);
     if (nearer) {

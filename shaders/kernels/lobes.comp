@@ -38,7 +38,7 @@ void answer(uint index) {
     answers[index].directionPdf = vec4(chosen.wi, pdf);
     answers[index].value = vec4(chosen.weight, 0.0);
     answers[index].probabilities = vec4(bsdf.glass, bsdf.specular, broadProbability(bsdf), 0.0);
-    answers[index].compensation = vec4(bsdf.gain, bsdf.boost, 0.0, 0.0);
+    answers[index].compensation = vec4(bsdf.gain, 0.0, 0.0, 0.0);
     answers[index].outcome = uvec4(chosen.lobe, chosen.delta ? 1u : 0u, 0u, 0u);
 }
 

@@ -301,7 +301,7 @@ bool traceRays(inout uint budget, out RayTransform transform) {
         query.kind = shadow ? kAnyHit : kNearestHit;
         query.alphaKey = kAlphaBlend ? alphaKey(shadow) : 0u;
         query.ignored = path.leaves;
-        query.plane = planeOf(path.leaves);
+        query.plane = planeOf(kCoincident ? path.leaves : kNone);
         query.alsoIgnored = shadow ? path.shadowPrimitive : kNone;
         transform = transformFor(query.ray);
         traverse(query, transform, path.traversal, budget, film.faults.y);

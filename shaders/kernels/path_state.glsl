@@ -66,23 +66,24 @@ void loadPoint(PathRecord record) {
     if (!kLambertianOnly) {
         path.point.outgoing = record.pointOutgoing.xyz;
         path.point.throughput = record.pointThroughput.xyz;
-        path.point.bsdf = Bsdf(vec3(0.0), record.pointF0.xyz, record.pointTint.xyz, record.pointShading.w,
-                               record.pointReflected.w, record.pointOutgoing.w, record.pointThroughput.w,
-                               record.pointF0.w, record.pointFacing.w, record.pointTint.w, record.pointMedia.x);
+        vec3 f90 = vec3(record.pointShading.w, record.pointReflected.w, uintBitsToFloat(record.pointMedia.y));
+        path.point.bsdf = Bsdf(vec3(0.0), record.pointF0.xyz, f90, record.pointTint.xyz, record.pointOutgoing.w,
+                               record.pointThroughput.w, record.pointF0.w, record.pointFacing.w, record.pointTint.w,
+                               record.pointMedia.x);
     }
 }
 
 void storePoint(uint lane) {
     ShadingPoint point = path.point;
     paths[lane].pointFacing = vec4(point.facing, point.bsdf.alpha);
-    paths[lane].pointShading = vec4(point.shading, point.bsdf.f90);
-    paths[lane].pointReflected = vec4(point.reflected, point.bsdf.boost);
+    paths[lane].pointShading = vec4(point.shading, point.bsdf.f90.x);
+    paths[lane].pointReflected = vec4(point.reflected, point.bsdf.f90.y);
     if (!kLambertianOnly) {
         paths[lane].pointOutgoing = vec4(point.outgoing, point.bsdf.specular);
         paths[lane].pointThroughput = vec4(point.throughput, point.bsdf.glass);
         paths[lane].pointF0 = vec4(point.bsdf.f0, point.bsdf.gain);
         paths[lane].pointTint = vec4(point.bsdf.tint, point.bsdf.eta);
-        paths[lane].pointMedia.x = point.bsdf.kind;
+        paths[lane].pointMedia.xy = uvec2(point.bsdf.kind, floatBitsToUint(point.bsdf.f90.z));
     }
 }
 

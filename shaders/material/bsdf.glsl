@@ -27,10 +27,9 @@ const uint kInside = 16u;        // wo lies in it
 
 struct Bsdf {
     vec3 diffuse;   // albedo of the diffuse lobe, times its share 1 - glass
-    vec3 f0;        // of the specular lobe, as f90
+    vec3 f0;        // of the specular lobe at normal incidence, its compensation multiplied in
+    vec3 f90;       // and at grazing
     vec3 tint;      // of what glass transmits
-    float f90;
-    float boost;    // the specular lobe's compensation is 1 + f0 * this
     float specular; // probability of choosing the specular lobe, given that it is not glass
     float glass;    // share of glass, and the probability of choosing it
     float gain;     // compensation of rough glass
@@ -40,30 +39,43 @@ struct Bsdf {
 };
 
 Bsdf lambertianBsdf(vec3 baseColor) {
-    return Bsdf(baseColor, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, kLambertian);
+    return Bsdf(baseColor, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 1.0, 1.0, 1.0, kLambertian);
 }
 
+// What the opaque part of a surface is made of: metal beside a dielectric, which lies over the diffuse base.
+struct Layers {
+    vec3 base;
+    float metal; // share
+    vec3 coatF0; // of the dielectric
+    float coatF90;
+};
+
+// Compensation included.
 vec3 specularFresnel(Bsdf bsdf, float cosine) { return bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlickWeight(cosine); }
 
 // The largest channel of what a specular lobe reflects: `albedo` for F = 1, `schlick` its mean of (1 - wo.h)^5.
-float mostReflected(vec4 fresnel, float boost, float albedo, float schlick) {
-    vec3 f0 = fresnel.rgb;
-    vec3 reflected = (1.0 + f0 * boost) * (f0 + (fresnel.a - f0) * schlick) * albedo;
-    return min(maxComponent(reflected), 1.0);
+float mostReflected(vec3 f0, vec3 f90, float albedo, float schlick) {
+    return min(maxComponent((f0 + (f90 - f0) * schlick) * albedo), 1.0);
 }
 
-// What the specular lobe does at the cosine of wo: its compensation, the diffuse base it leaves, the choice between the two.
-// `coat`: f0 and f90 of the share that is no metal, which alone lies over the base.
-void layerSpecular(inout Bsdf bsdf, vec3 base, vec4 coat, float cosine, uint albedoTables) {
+// What the specular lobe does at the cosine of wo: its Fresnel term, the diffuse base it leaves, the choice between the two.
+void layerSpecular(inout Bsdf bsdf, Layers layers, float cosine, uint albedoTables) {
     float albedo = 1.0;
     float schlick = schlickWeight(cosine);
     if (kRoughSpecular && (bsdf.kind & kDeltaSpecular) == 0u) {
         albedo = reflectionAlbedo(albedoTables, cosine, bsdf.alpha);
         schlick = fresnelAlbedo(albedoTables, cosine, bsdf.alpha);
-        bsdf.boost = 1.0 / albedo - 1.0;
     }
-    float reflected = mostReflected(vec4(bsdf.f0, bsdf.f90), bsdf.boost, albedo, schlick);
-    vec3 left = base * (1.0 - mostReflected(coat, bsdf.boost, albedo, schlick));
+    // What each share loses between microfacets is given back by its own F0 (Turquin 2019).
+    float boost = 1.0 / albedo - 1.0;
+    vec3 ofCoat = 1.0 + layers.coatF0 * boost;
+    vec3 ofMetal = 1.0 + layers.base * boost;
+    vec3 coatF0 = ofCoat * layers.coatF0;
+    vec3 coatF90 = ofCoat * layers.coatF90;
+    bsdf.f0 = mix(coatF0, ofMetal * layers.base, layers.metal);
+    bsdf.f90 = mix(coatF90, ofMetal, layers.metal);
+    float reflected = mostReflected(bsdf.f0, bsdf.f90, albedo, schlick);
+    vec3 left = layers.base * ((1.0 - layers.metal) * (1.0 - mostReflected(coatF0, coatF90, albedo, schlick)));
     float diffuse = maxComponent(left);
     bsdf.specular = reflected > 0.0 ? reflected / (reflected + diffuse) : 0.0;
     bsdf.diffuse = left * (1.0 - bsdf.glass);
@@ -116,13 +128,11 @@ Bsdf bsdfAt(MaterialRecord material, MapPoint at, vec3 base, float cosine, bool 
                 color *= mapValue(material.moreMaps.w, at, true).rgb;
             }
             float ratio = (ior - 1.0) / (ior + 1.0);
-            vec4 coat = vec4(factor * min(ratio * ratio * color, 1.0), factor);
-            bsdf.f0 = mix(coat.rgb, base, metal);
-            bsdf.f90 = mix(coat.a, 1.0, metal);
-            if (maxComponent(bsdf.f0) > 0.0 || bsdf.f90 > 0.0) {
+            Layers layers = Layers(base, metal, factor * min(ratio * ratio * color, 1.0), factor);
+            if (metal > 0.0 || factor > 0.0) {
                 bsdf.kind &= ~kLambertian;
                 if (!kRoughSpecular || bsdf.alpha < kSmallestAlpha) bsdf.kind |= kDeltaSpecular;
-                layerSpecular(bsdf, base * (1.0 - metal), coat, cosine, at.textures.w);
+                layerSpecular(bsdf, layers, cosine, at.textures.w);
             }
         }
         if ((bsdf.kind & kLambertian) == 0u && bsdf.specular == 0.0) bsdf.diffuse = base * (1.0 - bsdf.glass);
@@ -150,7 +160,7 @@ vec3 evalSpecular(Bsdf bsdf, vec3 wo, vec3 wi, inout float pdf) {
     float stretchOut = ggxStretch(wo, alphas);
     float density = ggxReflectionPdf(ggxDistribution(h, alphas), wo, stretchOut);
     pdf += (1.0 - bsdf.glass) * bsdf.specular * density;
-    vec3 fresnel = specularFresnel(bsdf, dot(wo, h)) * (1.0 + bsdf.f0 * bsdf.boost);
+    vec3 fresnel = specularFresnel(bsdf, dot(wo, h));
     return fresnel * ((1.0 - bsdf.glass) * density * ggxShadowing(wo.z, stretchOut, wi.z, ggxStretch(wi, alphas)));
 }
 

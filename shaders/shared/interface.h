@@ -66,6 +66,8 @@ ISOLUX_CONSTANT uint kSpecVertexColors = 39u;
 ISOLUX_CONSTANT uint kSpecAlphaMask = 40u;
 ISOLUX_CONSTANT uint kSpecAlphaBlend = 41u;
 ISOLUX_CONSTANT uint kSpecUnlit = 42u;
+ISOLUX_CONSTANT uint kSpecBackFaceCulling = 43u;
+ISOLUX_CONSTANT uint kSpecCoincident = 44u;
 
 ISOLUX_CONSTANT uint kLightsNone = 0u;
 ISOLUX_CONSTANT uint kLightsOne = 1u;

@@ -18,7 +18,7 @@ struct LobeAnswerRecord {
     vec4 directionPdf;  // as sampled, zero where that led nowhere, or `incoming`; w: density, delta lobes apart
     vec4 value;         // f |cos| of all lobes but delta lobes, or of a sampled delta lobe its weight; w unused
     vec4 probabilities; // of glass, of the specular lobe if it is not glass, of not sampling a delta lobe; w unused
-    vec4 compensation;  // x: of glass, y: of the specular lobe where F0 is 1, less 1; z, w unused
+    vec4 compensation;  // x: of glass; others unused
     uvec4 outcome;      // x: kLobe... that was sampled, y: 1 if it is a delta lobe; z, w unused
 };
 ISOLUX_CHECK_SIZE(LobeAnswerRecord, 80);

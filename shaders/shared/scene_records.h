@@ -15,8 +15,9 @@ struct NodeRecord {
 };
 ISOLUX_CHECK_SIZE(NodeRecord, 64);
 
-// A triangle or a sphere. id has kSphereBit for spheres and kAlphaBit where the surface is not everywhere there; its
-// other bits are the primitive id of host/scene. Sphere: p0 = centre, p1.x = radius.
+// A triangle or a sphere. id has kSphereBit for spheres, kAlphaBit where the surface is not everywhere there and
+// kCulledBackBit where it has no back; its other bits are the primitive id of host/scene. Sphere: p0 = centre, p1.x =
+// radius.
 struct PrimitiveRecord {
     vec4 p0Material; // w: material index, as bits
     vec4 p1Light;    // w: light index or kNone, as bits
@@ -101,7 +102,8 @@ ISOLUX_CHECK_SIZE(FilterCellsRecord, 16);
 ISOLUX_CONSTANT uint kNone = 0xFFFFFFFFu;
 ISOLUX_CONSTANT uint kSphereBit = 0x80000000u;
 ISOLUX_CONSTANT uint kAlphaBit = 0x40000000u;
-ISOLUX_CONSTANT uint kIdMask = 0x3FFFFFFFu;
+ISOLUX_CONSTANT uint kCulledBackBit = 0x20000000u;
+ISOLUX_CONSTANT uint kIdMask = 0x1FFFFFFFu;
 
 ISOLUX_CONSTANT uint kLightTriangle = 0u;
 ISOLUX_CONSTANT uint kLightSphere = 1u;

@@ -110,6 +110,15 @@ std::vector<DeviceLobe> whiteLobes(double alpha) {
     return lobes;
 }
 
+std::vector<DeviceLobe> partlyMetalLobes(double alpha) {
+    std::vector<DeviceLobe> lobes;
+    for (const double share : {0.25, 0.5, 0.75}) {
+        lobes.push_back({"metallic " + std::to_string(share), dielectric(alpha, 1.5, Vec3d(1.0))});
+        lobes.back().material.metallic = share;
+    }
+    return lobes;
+}
+
 Vec3d DeviceLobe::microfacetOf(const Vec3d& wo, const Vec3d& wi) const {
     const Vec3d mirrored(wi.x, wi.y, -wi.z);
     const Vec3d sum = wi.z >= 0.0 ? wo + wi : isSolid() ? wo + eta() * wi : wo + mirrored;

@@ -38,6 +38,8 @@ struct DeviceLobe {
 [[nodiscard]] std::vector<DeviceLobe> oneLobeEach(double alpha);
 /// Surfaces that absorb nothing.
 [[nodiscard]] std::vector<DeviceLobe> whiteLobes(double alpha);
+/// White, a part metal and the rest a dielectric.
+[[nodiscard]] std::vector<DeviceLobe> partlyMetalLobes(double alpha);
 
 /// The direction as the device gets it; its sine along x.
 [[nodiscard]] Vec3f outgoingOfCosine(double cosine);

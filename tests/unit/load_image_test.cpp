@@ -192,12 +192,12 @@ TEST_F(LoadImageTest, DamagedImagesAreSurvived) {
 }
 
 /// A PNG's header, with the right checksum, and next to nothing behind it.
-std::string claimingPng(std::uint32_t width, std::uint32_t height) {
+std::string claimingPng(std::uint32_t width, std::uint32_t height, char depth = 8, char colorType = 6) {
     const auto bigEndian = [](std::uint32_t v) {
         return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8),
                            static_cast<char>(v)};
     };
-    const std::string header = "IHDR" + bigEndian(width) + bigEndian(height) + std::string{8, 6, 0, 0, 0};
+    const std::string header = "IHDR" + bigEndian(width) + bigEndian(height) + std::string{depth, colorType, 0, 0, 0};
     std::uint32_t crc = 0xFFFFFFFFu; // of PNG's annex D
     for (const char c : header) {
         crc ^= static_cast<unsigned char>(c);
@@ -211,6 +211,9 @@ TEST_F(LoadImageTest, HeadersThatClaimTooMuchAreRefusedBeforeMemoryIsTaken) {
     EXPECT_MENTIONS(failureOf(claimingPng(65535, 65535)), "/images/0: ");
     EXPECT_MENTIONS(failureOf(claimingPng(20000, 4)), "at most 16384 a side");
     EXPECT_MENTIONS(failureOf(claimingPng(16384, 16384)), "16384 x 16384 texels: 57 bytes cannot hold them");
+    // They could hold them as bits.
+    EXPECT_MENTIONS(failureOf(claimingPng(512, 512)), "512 x 512 texels: 57 bytes cannot hold them");
+    EXPECT_MENTIONS(failureOf(claimingPng(512, 512, 1, 0)), "cannot be decoded");
     // Whether or not a surface needs the image.
     json document = triangleDocument();
     document["images"] = {{{"uri", dataUri(claimingPng(16384, 16384))}}};
@@ -238,6 +241,8 @@ TEST_F(LoadImageTest, HeadersOfWebpAreReadBeforeTheirDecoderIs) {
     } catch (const Error& error) {
         EXPECT_MENTIONS(error.what(), "scene.gltf: /images/0: it claims 16384 x 1 texels: at most 16383 a side");
     }
+    const std::string large = "\x2F\xFF\xFF\xFF\x0F" + std::string(8, '\0');
+    EXPECT_MENTIONS(failureOf(webp("VP8L", large)), "16384 x 16384 texels: 33 bytes cannot hold them");
     EXPECT_MENTIONS(failureOf(webp("ALPH", lossless)), "its data is cut short or damaged");
     EXPECT_MENTIONS(failureOf(webp("VP8L", "")), "its data is cut short or damaged");
 }

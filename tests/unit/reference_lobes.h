@@ -23,8 +23,6 @@ inline MaterialPoint<double> metalPoint(double alpha, const Vec3d& color = Vec3d
     point.base = color;
     point.metal = 1.0;
     point.alpha = alpha;
-    point.f0 = color;
-    point.f90 = 1.0;
     return point;
 }
 
@@ -35,16 +33,15 @@ inline MaterialPoint<double> coatedPoint(double alpha, double ior, const Vec3d& 
     point.alpha = alpha;
     point.ior = ior;
     const double root = (ior - 1.0) / (ior + 1.0);
-    point.f0 = point.coatF0 = Vec3d(root * root);
-    point.f90 = point.coatF90 = 1.0;
+    point.f0 = Vec3d(root * root);
+    point.f90 = 1.0;
     return point;
 }
 
 /// Partly metal, as filters between texels make it.
-inline MaterialPoint<double> halfMetalPoint(double alpha) {
+inline MaterialPoint<double> partlyMetalPoint(double alpha, double metal) {
     MaterialPoint<double> point = coatedPoint(alpha, 1.5);
-    point.metal = 0.5;
-    point.f0 = glm::mix(point.f0, point.base, point.metal);
+    point.metal = metal;
     return point;
 }
 
@@ -61,7 +58,6 @@ inline MaterialPoint<double> mixedPoint(double alpha, Body body) {
     point.metal = 0.4;
     point.transmission = 0.35;
     point.body = body;
-    point.f0 = glm::mix(point.f0, point.base, point.metal);
     return point;
 }
 

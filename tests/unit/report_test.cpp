@@ -2,7 +2,7 @@
 #include "core/error.h"
 #include "report/comparison.h"
 #include "report/format.h"
-#include "report/paired.h"
+#include "report/paired_limits.h"
 #include "report/run_report.h"
 #include "report_images.h"
 
@@ -396,6 +396,49 @@ TEST(Paired, NanIsNeverWithinTolerance) {
     EXPECT_EQ(result.unexplained, 1u);
     EXPECT_EQ(result.difference999, kInfinity);
     EXPECT_TRUE(std::isnan(result.luminanceBias.estimate));
+}
+
+std::vector<std::string> exceeded(const Film& film, const Film& reference) {
+    return exceededLimits(pairedDifferences(film, reference), {});
+}
+
+/// Every tenth pixel on another branch, as often brighter as darker by `part`.
+Film branchedFilm(const Film& reference, double part) {
+    Film film = reference;
+    for (std::uint32_t i = 0; i < film.width; i += 10) {
+        film.at(i, 0).mean *= 1.0 + (i / 10 % 2 == 0 ? part : -part);
+        film.at(i, 0).pathSignature = 3;
+    }
+    return film;
+}
+
+TEST(Paired, OtherBranchesAgreeWhereTheMeanIsKnown) {
+    const Film reference = uniformFilm(100000, 1);
+    EXPECT_TRUE(exceeded(branchedFilm(reference, 0.01), reference).empty()) << "interval of 2e-5";
+    const std::vector<std::string> unknown = exceeded(branchedFilm(reference, 0.5), reference);
+    ASSERT_EQ(unknown.size(), 1u) << "interval of 1e-3 about 0";
+    expectMentions(unknown[0], "90 %");
+    expectMentions(unknown[0], "98 %");
+    expectMentions(unknown[0], "more samples");
+}
+
+TEST(Paired, WhatIsExceededIsNamedWithItsLimit) {
+    const Film reference = uniformFilm(1000, 1);
+    EXPECT_TRUE(exceeded(reference, reference).empty());
+    Film mistaken = reference;
+    mistaken.at(0, 0).mean *= 1.01;
+    const std::vector<std::string> one = exceeded(mistaken, reference);
+    ASSERT_EQ(one.size(), 1u);
+    expectMentions(one[0], "1 pixels are unexplained");
+    Film brighter = reference;
+    for (PixelStatistics& pixel : brighter.pixels) pixel.mean *= 1.0005; // within the tolerance, all of them
+    const std::vector<std::string> biased = exceeded(brighter, reference);
+    ASSERT_EQ(biased.size(), 1u);
+    expectMentions(biased[0], "relative bias");
+    expectMentions(biased[0], "0.01 %");
+    Film nan = reference;
+    nan.at(0, 0).mean.x = kNan;
+    EXPECT_EQ(exceeded(nan, reference).size(), 2u) << "unexplained, and no mean";
 }
 
 TEST(Paired, FilmsMustFit) {
