@@ -61,6 +61,10 @@ std::string hashWith(const std::string& sceneHash, const std::filesystem::path& 
     return hash.hexadecimal();
 }
 
+bool isBlack(const EnvironmentMap& map) {
+    return std::all_of(map.texels.begin(), map.texels.end(), [](const Vec3f& texel) { return texel == Vec3f(0.0f); });
+}
+
 void loadMap(Scene& scene, const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
@@ -68,6 +72,10 @@ void loadMap(Scene& scene, const std::string& path) {
     scene.environment = Environment{};
     scene.environment.radiance = Vec3d(1.0);
     scene.environment.map = loadEnvironmentMap(path);
+    if (isBlack(*scene.environment.map)) {
+        spdlog::warn("--environment: '{}' is black: the scene gets no light from it", path);
+        scene.environment = Environment{};
+    }
     scene.contentHash = hashWith(scene.contentHash, path);
 }
 
