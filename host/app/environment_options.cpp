@@ -61,6 +61,10 @@ std::string hashWith(const std::string& sceneHash, const std::filesystem::path& 
     return hash.hexadecimal();
 }
 
+bool isBlack(const EnvironmentMap& map) {
+    return std::all_of(map.texels.begin(), map.texels.end(), [](const Vec3f& texel) { return texel == Vec3f(0.0f); });
+}
+
 void loadMap(Scene& scene, const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
@@ -68,6 +72,10 @@ void loadMap(Scene& scene, const std::string& path) {
     scene.environment = Environment{};
     scene.environment.radiance = Vec3d(1.0);
     scene.environment.map = loadEnvironmentMap(path);
+    if (isBlack(*scene.environment.map)) {
+        spdlog::warn("--environment: '{}' is black: the scene gets no light from it", path);
+        scene.environment = Environment{};
+    }
     scene.contentHash = hashWith(scene.contentHash, path);
 }
 
@@ -110,20 +118,14 @@ void checkEnvironmentThere(const EnvironmentOptions& options) {
     if (idle != nullptr) throwBadInput(idle, "the scene has no environment; --environment gives it one");
 }
 
-std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
-    std::vector<std::uint32_t> used;
-    for (const Instance& instance : scene.instances) used.push_back(scene.meshes[instance.mesh].material);
-    for (const Sphere& sphere : scene.spheres) used.push_back(sphere.material);
-    return used;
-}
-
 /// Whether surfaces wait for light and nothing gives any. Unlit ones show their colour without.
 bool lacksLight(const Scene& scene) {
     if (!scene.punctualLights.empty() || scene.environment.emits()) return false;
-    const std::vector<std::uint32_t> used = usedMaterials(scene);
+    const std::vector<bool> used = materialsInUse(scene);
     const auto is = [&](auto property) {
-        return std::any_of(used.begin(), used.end(),
-                           [&](std::uint32_t index) { return property(scene.materials[index]); });
+        for (std::size_t i = 0; i < used.size(); ++i)
+            if (used[i] && property(scene.materials[i])) return true;
+        return false;
     };
     if (!is([](const Material& material) { return !material.unlit; })) return false;
     // Emitters of no area or with black maps are in no light table; building one takes time, so only if it may matter.

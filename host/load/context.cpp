@@ -25,6 +25,17 @@ std::string printable(std::string_view text) {
     return result;
 }
 
+std::string printableLines(std::string_view text) {
+    std::string joined;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        if (end > begin && !joined.empty()) joined += "; ";
+        joined += text.substr(begin, end - begin);
+        begin = end + 1;
+    }
+    return printable(joined);
+}
+
 void LoadContext::fail(std::string_view pointer, std::string_view message) const {
     throwBadInput(pointer.empty() ? file_ : fmt::format("{}: {}", file_, printable(pointer)), message);
 }

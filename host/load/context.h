@@ -14,6 +14,9 @@ namespace isolux {
 /// Text from a file made fit for a message: control characters are replaced and long text is cut.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// The same of a decoder's words, whose lines are joined by "; ".
+[[nodiscard]] std::string printableLines(std::string_view text);
+
 class LoadContext {
 public:
     explicit LoadContext(std::string file, const LoadLimits& limits = {}) : file_(std::move(file)), limits_(limits) {}

@@ -60,7 +60,7 @@ public:
         if (!input_ || !input_->set_ioproxy(&reader_))
             context.fail("", fmt::format("OpenImageIO of this build reads no {} from memory", format.name));
         if (!input_->open(fmt::format("image.{}", format.name), spec))
-            context.fail("", "not an image that can be read: " + printable(input_->geterror()));
+            context.fail("", "not an image that can be read: " + printableLines(input_->geterror()));
     }
 
     [[nodiscard]] OIIO::ImageInput& input() { return *input_; }
@@ -95,7 +95,7 @@ std::vector<Vec3f> readTexels(OIIO::ImageInput& input, const LoadContext& contex
     const int channels = spec.nchannels < 3 ? 1 : 3;
     std::vector<Vec3f> texels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
     if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, texels.data(), sizeof(Vec3f)))
-        context.fail("", "cannot be decoded: " + printable(input.geterror()));
+        context.fail("", "cannot be decoded: " + printableLines(input.geterror()));
     if (channels == 1)
         for (Vec3f& texel : texels) texel = Vec3f(texel.x);
     return texels;

@@ -100,7 +100,7 @@ double bitsPerTexel(const EncodedImage& image, const Format& format) {
 }
 
 /// OpenImageIO's own words, in one line.
-std::string reasonOf(const OIIO::ImageInput& input) { return printable(input.geterror()); }
+std::string reasonOf(const OIIO::ImageInput& input) { return printableLines(input.geterror()); }
 
 void requireReasonableSize(const EncodedImage& image, const Format& format, std::int64_t width, std::int64_t height) {
     const auto fail = [&](const std::string& reason) {

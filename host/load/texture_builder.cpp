@@ -14,13 +14,6 @@ std::uint64_t bytesOf(const TextureImage& image) {
     return image.texels8.size() * sizeof(Texel8) + image.texels16.size() * sizeof(Texel16);
 }
 
-std::vector<char> materialsInUse(const Scene& scene) {
-    std::vector<char> inUse(scene.materials.size(), 0);
-    for (const Mesh& mesh : scene.meshes) inUse[mesh.material] = 1;
-    for (const Sphere& sphere : scene.spheres) inUse[sphere.material] = 1;
-    return inUse;
-}
-
 class TextureBuilder {
 public:
     TextureBuilder(Scene& scene, const std::vector<FileTexture>& textures, const std::vector<EncodedImage>& images)
@@ -68,7 +61,7 @@ private:
 
 void buildTextures(Scene& scene, const std::vector<FileTexture>& textures, const std::vector<EncodedImage>& images) {
     TextureBuilder builder(scene, textures, images);
-    const std::vector<char> inUse = materialsInUse(scene);
+    const std::vector<bool> inUse = materialsInUse(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         for (TextureMap& map : scene.materials[i].maps) {
             if (!inUse[i]) map = {};

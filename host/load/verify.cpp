@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 #include <set>
 
 namespace isolux {
@@ -65,6 +66,17 @@ void verifyAsset(const JsonReader& root) {
             fmt::format("a reader of glTF {} is needed; this one reads 2.0", printable(minVersion->string())));
 }
 
+/// Where each extension is first used by a material, as a pointer.
+std::map<std::string, std::string> firstMaterialsWith(const JsonReader& root) {
+    std::map<std::string, std::string> first;
+    for (std::size_t i = 0; i < root.sizeOf("materials"); ++i) {
+        const std::optional<JsonReader> extensions = root.at("materials").element(i).find("extensions");
+        if (!extensions) continue;
+        for (const std::string& name : extensions->keys()) first.emplace(name, extensions->pointer());
+    }
+    return first;
+}
+
 json verifyExtensions(const JsonReader& root) {
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) warnOfRepeats(root, list);
     json required = json::array();
@@ -74,10 +86,14 @@ json verifyExtensions(const JsonReader& root) {
             entry.fail(fmt::format("the file requires {}, which is not supported; export without it", printable(name)));
         required.push_back(entry.string());
     }
+    const std::map<std::string, std::string> materials = firstMaterialsWith(root);
     for (std::size_t i = 0; i < root.sizeOf("extensionsUsed"); ++i) {
         const JsonReader entry = root.at("extensionsUsed").element(i);
-        if (const std::string& name = entry.string(); !isSupportedExtension(name))
-            entry.warn(fmt::format("{} is not supported; ignored", printable(name)));
+        const std::string& name = entry.string();
+        if (isSupportedExtension(name)) continue;
+        const auto used = materials.find(name);
+        root.context().warn(used == materials.end() ? entry.pointer() : used->second,
+                            fmt::format("{} is not supported; ignored", printable(name)));
     }
     return required;
 }

@@ -115,7 +115,7 @@ void readMaps(const Parts& parts, const JsonReader& root, Material& material) {
     read(MapSlot::specularColor, parts.specular, "specularColorTexture");
     const std::optional<JsonReader> normal = parts.material.find("normalTexture");
     if (normal && normal->find("scale"))
-        material.normalScale = normal->at("scale").numberBetween(-kLargestRadiance, kLargestRadiance);
+        material.normalScale = normal->at("scale").numberBetween(-kLargestNormalScale, kLargestNormalScale);
     // Ambient occlusion is what a path tracer computes.
     if (const std::optional<JsonReader> occlusion = parts.material.find("occlusionTexture"))
         (void)occlusion->at("index").index(root.sizeOf("textures"), "textures");

@@ -53,9 +53,10 @@ void simplifyMap(const Scene& scene, Material& material, MapSlot slot) {
         map.texture = kNoTexture;
         return;
     }
+    // No texel stores a normal that is exactly that of the surface: loaders leave flat maps out by their own tolerance.
+    if (slot == MapSlot::normal) return;
     const std::optional<glm::dvec4> constant = constantValue(scene, map, slot);
-    const bool absent = constant && (slot != MapSlot::normal || rgb(*constant) == Vec3d(0.5, 0.5, 1.0));
-    if (!absent) return;
+    if (!constant) return;
     fold(material, slot, *constant);
     map.texture = kNoTexture;
 }
@@ -84,10 +85,6 @@ bool neverHides(const Scene& scene, const Material& material, double vertexAlpha
     return material.alphaMode == AlphaMode::mask ? least >= material.alphaCutoff : least >= 1.0;
 }
 
-template <typename Visit> void forEachPlacedMesh(const Scene& scene, const Visit& visit) {
-    for (const Instance& instance : scene.instances) visit(scene.meshes[instance.mesh]);
-}
-
 } // namespace
 
 std::vector<Material> effectiveMaterials(const Scene& scene) {
@@ -105,20 +102,12 @@ std::vector<Material> effectiveMaterials(const Scene& scene) {
     return materials;
 }
 
-std::vector<bool> materialsInUse(const Scene& scene) {
-    std::vector<bool> used(scene.materials.size(), false);
-    forEachPlacedMesh(scene, [&](const Mesh& mesh) { used[mesh.material] = true; });
-    for (const Sphere& sphere : scene.spheres) used[sphere.material] = true;
-    return used;
-}
-
 bool hasVertexColors(const Scene& scene) {
-    bool found = false;
-    forEachPlacedMesh(scene, [&](const Mesh& mesh) {
-        found = found || std::any_of(mesh.colors.begin(), mesh.colors.end(),
-                                     [](const glm::vec4& color) { return color != glm::vec4(1.0f); });
+    return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+        const std::vector<glm::vec4>& colors = scene.meshes[instance.mesh].colors;
+        return std::any_of(colors.begin(), colors.end(),
+                           [](const glm::vec4& color) { return color != glm::vec4(1.0f); });
     });
-    return found;
 }
 
 } // namespace isolux

@@ -11,9 +11,6 @@ namespace isolux {
 /// alpha can never hide anything made opaque. They describe the same surfaces.
 [[nodiscard]] std::vector<Material> effectiveMaterials(const Scene& scene);
 
-/// Which of the scene's materials a placed mesh or a sphere has.
-[[nodiscard]] std::vector<bool> materialsInUse(const Scene& scene);
-
 /// Whether a placed mesh has colours other than white, which its material multiplies by.
 [[nodiscard]] bool hasVertexColors(const Scene& scene);
 

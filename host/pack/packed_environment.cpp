@@ -4,17 +4,26 @@
 
 #include "shared/scene_records.h"
 
+#include <algorithm>
+
 namespace isolux {
 
-PackedEnvironment appendEnvironment(Tables& tables, const EnvironmentMap& map) {
+double brightestTexel(const EnvironmentMap& map) {
+    float brightest = 0.0f;
+    for (const Vec3f& texel : map.texels) brightest = std::max(brightest, maxComponent(texel));
+    return brightest;
+}
+
+PackedEnvironment appendEnvironment(Tables& tables, const EnvironmentMap& map, double texelScale) {
     const EnvironmentTable table = buildEnvironmentTable(map);
-    PackedEnvironment packed{tables.next(), 0, table.cells.bits, map.width, map.height};
+    PackedEnvironment packed{tables.next(), 0, table.cells.bits, map.width, map.height, texelScale};
     std::size_t texel = 0;
     for (std::uint32_t row = 0; row < map.height; ++row) {
         const double solidAngle = cellSolidAngle(map, row);
         for (std::uint32_t column = 0; column < map.width; ++column, ++texel) {
             const double chosen = table.cells.pdf.empty() ? 0.0 : table.cells.pdf[texel];
-            tables.append(glm::vec4(map.texels[texel], static_cast<float>(chosen / solidAngle)));
+            const Vec3f scaled(Vec3d(map.texels[texel]) * texelScale);
+            tables.append(glm::vec4(scaled, static_cast<float>(chosen / solidAngle)));
         }
     }
     packed.bins = tables.next();

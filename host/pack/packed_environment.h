@@ -14,8 +14,13 @@ struct PackedEnvironment {
     std::uint32_t bits = 0;
     std::uint32_t width = 0; ///< 0: there is no map
     std::uint32_t height = 0;
+    double texelScale = 1.0; ///< packed texels over the map's: the brightest near 1
 };
 
-[[nodiscard]] PackedEnvironment appendEnvironment(Tables& tables, const EnvironmentMap& map);
+/// The brightest component of any texel.
+[[nodiscard]] double brightestTexel(const EnvironmentMap& map);
+
+/// With every texel times `texelScale`.
+[[nodiscard]] PackedEnvironment appendEnvironment(Tables& tables, const EnvironmentMap& map, double texelScale);
 
 } // namespace isolux

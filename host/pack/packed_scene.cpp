@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "pack/effective_materials.h"
 #include "pack/packed_attributes.h"
+#include "pack/unit_scale.h"
 #include "scene/lights.h"
 #include "scene/pixel_filter.h"
 
@@ -29,22 +30,15 @@ struct Primitives {
     std::vector<Box3f> boxes;
 };
 
-double brightestTexel(const Environment& environment) {
-    if (!environment.map) return 1.0;
-    double brightest = 0.0;
-    for (const Vec3f& texel : environment.map->texels)
-        brightest = std::max(brightest, static_cast<double>(maxComponent(texel)));
-    return brightest;
-}
-
 class Packer {
 public:
     Packer(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features)
         : scene_(scene), settings_(settings), features_(features), materials_(effectiveMaterials(scene)),
           lights_(buildLightTable(scene, settings)) {
         packed_.space = chooseSpace(scene);
-        const double brightest = brightestLight();
-        if (brightest > 0.0) packed_.radianceScale = std::exp2(-std::ceil(std::log2(brightest)));
+        const double texel = scene.environment.map ? brightestTexel(*scene.environment.map) : 1.0;
+        texelScale_ = scene.environment.map ? unitScale(texel) : 1.0;
+        packed_.radianceScale = unitScale(brightestLight(texel));
     }
 
     PackedScene pack() {
@@ -63,8 +57,8 @@ public:
 
 private:
     /// The largest component that any light record will hold, in the world's radiance.
-    [[nodiscard]] double brightestLight() const {
-        double brightest = maxComponent(scene_.environment.radiance) * brightestTexel(scene_.environment);
+    [[nodiscard]] double brightestLight(double environmentTexel) const {
+        double brightest = maxComponent(scene_.environment.radiance) * environmentTexel;
         for (const Material& material : materials_)
             brightest = std::max(brightest, maxComponent(material.unlit ? material.baseColor : material.emission));
         for (const PunctualLight& light : scene_.punctualLights)
@@ -181,7 +175,7 @@ private:
         if (settings_.filter.kind != PixelFilter::box) addFilter();
         packed_.textures = materials.appendTextures(tables_);
         if (features_.environmentMap && scene_.environment.map)
-            packed_.environment = appendEnvironment(tables_, *scene_.environment.map);
+            packed_.environment = appendEnvironment(tables_, *scene_.environment.map, texelScale_);
         packed_.tables = tables_.take();
         PackedAttributes attributes = packAttributes(
             scene_, {features_.smoothNormals, features_.normalMaps, features_.vertexColors, materials.uvSets()}, order);
@@ -248,7 +242,7 @@ private:
         return {word(Vec3f(0.0f), asFloat(shared::kNone)),
                 glm::vec4(0.0f),
                 {range, 0.0f, 0.0f, 0.0f},
-                word(radiance(scene_.environment.radiance), asFloat(shared::kLightEnvironment))};
+                word(radiance(scene_.environment.radiance / texelScale_), asFloat(shared::kLightEnvironment))};
     }
 
     [[nodiscard]] Vec3f radiance(const Vec3d& inWorld) const { return Vec3f(inWorld * packed_.radianceScale); }
@@ -258,6 +252,7 @@ private:
     const SceneFeatures& features_;
     std::vector<Material> materials_; ///< the effective ones
     LightTable lights_;
+    double texelScale_ = 1.0; ///< of the environment map
     Primitives primitives_;
     Tables tables_;
     PackedScene packed_;
@@ -307,8 +302,8 @@ shared::RenderParameters packParameters(const PackedScene& packed, const Scene& 
     parameters.lensUp = word(Vec3f(camera.worldFromCamera[1]), 0.0f);
     parameters.methods = packMethods(packed.space, settings);
     const Environment& environment = scene.environment;
-    parameters.environment =
-        word(Vec3f(environment.radiance * packed.radianceScale), static_cast<float>(packed.environmentPdf));
+    parameters.environment = word(Vec3f(environment.radiance * (packed.radianceScale / packed.environment.texelScale)),
+                                  static_cast<float>(packed.environmentPdf));
     parameters.environmentLimits.x = environment.extent == EnvironmentExtent::sphere ? -2.0f : 0.0f;
     parameters.environmentLimits.y = static_cast<float>(environment.rotation - std::floor(environment.rotation));
     parameters.environmentLimits.z = static_cast<float>(packed.radianceScale);

@@ -55,7 +55,6 @@ bool isGlass(const Material& material) {
 
 /// Below it the lobes of a surface without a map are delta lobes for certain.
 bool isRough(const Material& material) {
-    constexpr double kSmallestAlpha = 1e-5;
     const bool mapped = usesMap(material, MapSlot::metallicRoughness) && material.roughness > 0.0;
     // Rounding may take what is hardly below the bound for above it.
     return mapped || material.roughness * material.roughness > 0.999 * kSmallestAlpha;

@@ -9,9 +9,6 @@
 
 namespace isolux {
 
-/// Lobes that are narrower are delta lobes.
-inline constexpr double kSmallestAlpha = 1e-5;
-
 template <typename Real> struct Ggx {
     Vec2<Real> alpha; ///< along x and y
 

@@ -16,6 +16,13 @@ Scene moved(Scene scene, const Vec3d& by) {
     return scene;
 }
 
+std::vector<bool> materialsInUse(const Scene& scene) {
+    std::vector<bool> used(scene.materials.size(), false);
+    for (const Instance& instance : scene.instances) used[scene.meshes[instance.mesh].material] = true;
+    for (const Sphere& sphere : scene.spheres) used[sphere.material] = true;
+    return used;
+}
+
 Box3d worldBounds(const Scene& scene) {
     Box3d bounds;
     for (const Instance& instance : scene.instances)

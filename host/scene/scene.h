@@ -76,6 +76,11 @@ enum class AlphaMode : std::uint32_t { opaque, mask, blend };
 
 /// glTF's metallic-roughness surface with the extensions named beside the fields. Colours are linear Rec. 709. As it
 /// stands it is a white Lambertian surface; README.md, "Surfaces", says what every number does.
+/// Lobes of less roughness than the square root of this are delta lobes (as bsdf.glsl's, which shares it).
+inline constexpr double kSmallestAlpha = 1e-5;
+/// Of a normal map; single precision holds its square.
+inline constexpr double kLargestNormalScale = 1e15;
+
 struct Material {
     std::string name;
     Vec3d baseColor{
@@ -212,6 +217,9 @@ struct Scene {
 /// Number of primitives: the triangles of every instance in order, then the spheres. A primitive's index in this
 /// order is its id everywhere (lights, hits, signatures).
 [[nodiscard]] std::size_t primitiveCount(const Scene& scene);
+
+/// Which of the scene's materials a placed mesh or a sphere has.
+[[nodiscard]] std::vector<bool> materialsInUse(const Scene& scene);
 
 /// World-space bounds of all vertices and spheres; empty if there are none.
 [[nodiscard]] Box3d worldBounds(const Scene& scene);

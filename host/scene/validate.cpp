@@ -57,6 +57,7 @@ void validateFactors(const Material& material, const std::string& where) {
     require(material.thickness >= 0.0, "thickness must not be negative");
     require(material.attenuationDistance > 0.0, "the attenuation distance must be positive"); // it may be infinite
     require(material.alphaCutoff >= 0.0, "the alpha cutoff must not be negative");
+    require(std::abs(material.normalScale) <= kLargestNormalScale, "the scale of the normal map is too large");
 }
 
 bool hasFiniteFactors(const Material& material) {

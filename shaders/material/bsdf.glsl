@@ -16,7 +16,7 @@ layout(constant_id = 29) const bool kGlass = true;
 layout(constant_id = 30) const bool kRoughGlass = true;
 
 const bool kLambertianOnly = !kSpecular && !kGlass;
-const float kSmallestAlpha = 1e-5; // below, a lobe is a delta lobe
+const float kSmallestAlpha = 1e-5; // below, a lobe is a delta lobe; as host/scene/scene.h says
 
 // Bits of Bsdf.kind.
 const uint kLambertian = 1u;     // the diffuse lobe alone

@@ -1,6 +1,7 @@
 // Punctual lights, the environment, orthographic cameras and first hits: the device against the reference, path by
 // path.
 #include "device/paired_fixture.h"
+#include "support/materials.h"
 #include "support/methods.h"
 
 #include "load/gltf.h"
@@ -33,6 +34,22 @@ TEST_F(Lights, Environment) {
         scene.environment = {Vec3d(0.9, 1.0, 1.2), extent};
         SCOPED_TRACE(static_cast<int>(extent));
         expectAgreement(scene, imageSettings(96, 96, 16));
+    }
+}
+
+/// The device's scales must be numbers that it has, and so must what they multiply.
+TEST_F(Lights, EnvironmentMapsOfAnyBrightness) {
+    Scene scene = darkRoom();
+    for (const double radiance : {1.0, 1e-30, 1e30}) {
+        for (const float texel : {1e-40f, 1e-20f, 1e36f}) {
+            if (!(radiance * texel < 1e37)) continue; // beyond what an image holds
+            EnvironmentMap map = skyMap();
+            for (Vec3f& t : map.texels) t = t / 30.0f * texel;
+            scene.environment = {Vec3d(radiance), EnvironmentExtent::sphere,
+                                 std::make_shared<EnvironmentMap>(std::move(map)), 0.2};
+            SCOPED_TRACE(std::to_string(std::log10(radiance)) + " " + std::to_string(std::log10(texel)));
+            expectAgreement(scene, imageSettings(24, 24, 8));
+        }
     }
 }
 

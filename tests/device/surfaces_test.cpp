@@ -17,19 +17,32 @@ class Surfaces : public Paired, public ::testing::WithParamInterface<SurfaceCase
 /// Mirrors, lenses and bumps magnify rounding from bounce to bounce: fewer pixels agree to 1e-3, each explained.
 TEST_P(Surfaces, AgreeWithTheReference) {
     validate(GetParam().scene);
-    expectAgreement(GetParam().scene, smallImage(20), 0.98);
+    RenderSettings settings = smallImage(20);
+    settings.backFaces = GetParam().backFaces;
+    expectAgreement(GetParam().scene, settings, 0.98);
 }
 
 /// With more compiled in, the same bits. Drivers that repeat what another has done take two cases.
 TEST_P(Surfaces, MoreCompiledInChangesNoBit) {
     const std::set<std::string> enough{"Mirror", "AlphaMask"};
     if (workShare() < 1.0 && !enough.contains(GetParam().name)) return;
-    const RenderSettings settings = imageSettings(24, 24, 8);
+    RenderSettings settings = imageSettings(24, 24, 8);
+    settings.backFaces = GetParam().backFaces;
     const SceneFeatures needed = findFeatures(GetParam().scene, settings);
     RenderOptions options;
     options.features = moreFeatures(needed);
     EXPECT_NE(*options.features, needed);
     EXPECT_EQ(differingPixels(render(GetParam().scene, settings), render(GetParam().scene, settings, options)), 0u);
+}
+
+/// That the case tests something: without culling its shell keeps the sky off.
+TEST_F(Paired, CulledBacksLetLightIn) {
+    const Scene scene = surfaceScene("CulledBacks");
+    RenderSettings settings = imageSettings(24, 24, 8);
+    const Film shown = render(scene, settings);
+    settings.backFaces = BackFaces::culled;
+    const Film culled = render(scene, settings);
+    EXPECT_GT(differingPixels(shown, culled), culled.pixels.size() / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Surfaces, ::testing::ValuesIn(surfaceCases()),

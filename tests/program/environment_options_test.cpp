@@ -80,6 +80,17 @@ TEST_F(EnvironmentOptionsTest, NoneIsDarkAndExplained) {
     EXPECT_TRUE(contains(metadata("isolux/options"), "--environment none"));
 }
 
+TEST_F(EnvironmentOptionsTest, ABlackMapIsNoLight) {
+    writeMap("black.exr", 0.0f);
+    const std::string options = "--environment '" + file("black.exr") + "'";
+    const ProgramResult result = render(options + " 2>&1");
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "black.exr' is black")) << result.output;
+    EXPECT_TRUE(contains(result.output, "the image is black: the scene has no light")) << result.output;
+    EXPECT_TRUE(report().at("environment").is_null());
+    EXPECT_TRUE(contains(metadata("isolux/options"), "black.exr"));
+}
+
 TEST_F(EnvironmentOptionsTest, OnlySurfacesThatWaitForLightGetASky) {
     json document = cubeDocument();
     addPunctualLight(document, "point");

@@ -62,6 +62,8 @@ TEST_F(MethodOptionsTest, UnknownChoicesListWhatThereIs) {
     expectRefused("--pixel-filter foo", {"--pixel-filter", "box,triangle,gaussian,blackman-harris"});
     expectRefused("--accel foo", {"--accel", "none,mean-split,sah"});
     expectRefused("--triangle-test foo", {"--triangle-test", "watertight,moller-trumbore"});
+    expectRefused("--back-faces foo", {"--back-faces", "foo", "shown,culled"});
+    expectRefused("--back-faces", {"--back-faces"});
 }
 
 TEST_F(MethodOptionsTest, WhatNeedsAnotherOptionSaysWhich) {
@@ -161,6 +163,15 @@ TEST_F(MethodOptionsTest, LightSamplesGoToPunctualLightsAlways) {
     expectWarning("--light-sampling bsdf --light-samples 2", {});
 }
 
+TEST_F(MethodOptionsTest, CullingNeedsSomethingSingleSided) {
+    expectWarning("--back-faces culled", {});
+    json document = cubeDocument();
+    for (json& material : document["materials"]) material["doubleSided"] = true;
+    writeScene(document);
+    expectWarning("--back-faces culled", {"--back-faces culled", "double-sided"});
+    expectWarning("--back-faces shown", {});
+}
+
 // --- What is said of the methods ---
 
 TEST_F(MethodOptionsTest, HelpNamesThemInGroups) {
@@ -171,7 +182,7 @@ TEST_F(MethodOptionsTest, HelpNamesThemInGroups) {
           "--ao-distance",    "--light-sampling", "--mis-heuristic", "--light-samples",  "--light-choice",
           "--bounces",        "--light ",         "--roulette ",     "--roulette-start", "--pixel-sampler",
           "--pixel-filter",   "--filter-radius",  "--aperture",      "--focus",          "--accel",
-          "--leaf-size",      "--triangle-test",  "--count-tests"}) {
+          "--leaf-size",      "--triangle-test",  "--count-tests",   "--back-faces"}) {
         EXPECT_TRUE(contains(render, word)) << word;
         EXPECT_TRUE(contains(verify, word)) << word;
     }
@@ -214,7 +225,9 @@ const std::vector<MethodCase> kMethodCases{
     {"--aperture 0.25 --focus 5", {{"aperture", "0.25"}, {"focus", "5"}}},
     {"--accel none", {{"accel", "none"}}},
     {"--accel mean-split --leaf-size 2", {{"accel", "mean-split"}, {"leaf-size", "2"}}},
-    {"--triangle-test moller-trumbore", {{"triangle-test", "moller-trumbore"}}}};
+    {"--triangle-test moller-trumbore", {{"triangle-test", "moller-trumbore"}}},
+    {"--back-faces shown", json::object()},
+    {"--back-faces culled", {{"back-faces", "culled"}}}};
 
 class MethodOptionsOfTest : public MethodOptionsTest, public ::testing::WithParamInterface<const char*> {};
 

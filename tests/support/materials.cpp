@@ -247,6 +247,20 @@ Scene everything() {
     return scene;
 }
 
+/// A panel cut out by a mask that turns its back, in a shell that is seen from inside; one of the spheres is glass.
+Scene backFaces() {
+    Builder builder{Material{}};
+    builder.map(MapSlot::baseColor, image8(12, 12, colourful));
+    builder.subject().alphaMode = AlphaMode::mask;
+    for (auto& triangle : builder.panel().triangles) std::swap(triangle[1], triangle[2]);
+    Scene& scene = builder.scene();
+    scene.spheres[0].material = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.push_back(glass(0.2, Walls::solid));
+    scene.spheres.push_back({"shell", Vec3d(0.0, 1.0, 0.0), 20.0, static_cast<std::uint32_t>(scene.materials.size())});
+    scene.materials.push_back(metal(0.5));
+    return scene;
+}
+
 } // namespace
 
 EnvironmentMap skyMap() {
@@ -270,6 +284,7 @@ std::vector<SurfaceCase> surfaceCases() {
     sky.scene().environment.rotation = -0.15;
     cases.push_back({"EnvironmentMap", sky.scene()});
     cases.push_back({"Everything", everything()});
+    cases.push_back({"CulledBacks", backFaces(), BackFaces::culled});
     return cases;
 }
 

@@ -15,7 +15,7 @@ namespace isolux::test {
     if (workShare() == 1.0) return {};
     SceneFeatures more = needed;
     more.spheres = more.smoothNormals = more.areaLights = more.punctualLights = more.environment = true;
-    more.vertexColors = more.unlit = more.alphaMask = more.coincident = true;
+    more.vertexColors = more.unlit = more.alphaMask = more.backFaceCulling = more.coincident = true;
     more.lights = LightCount::many;
     more.roulette = Roulette::throughput;
     return more;

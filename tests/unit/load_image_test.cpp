@@ -1,6 +1,8 @@
 // Images of glTF files: every format as stored, and hostile ones refused.
 #include "unit/load_images.h"
 
+#include "load/context.h"
+
 namespace isolux::load_test {
 namespace {
 
@@ -178,6 +180,12 @@ TEST_F(LoadImageTest, TruncatedImagesAreRefused) {
         for (const std::size_t length : {bytes.size() / 2, bytes.size() - 40, std::size_t{30}, std::size_t{12}})
             EXPECT_MENTIONS(failureOf(bytes.substr(0, length)), "/images/0: ") << name << " " << length;
     }
+}
+
+TEST_F(LoadImageTest, WordsOfDecodersStayOnOneLine) {
+    EXPECT_EQ(printableLines("incorrect data check\nPNG library error\n"), "incorrect data check; PNG library error");
+    EXPECT_EQ(printableLines("a\n\nb\tc"), "a; b?c");
+    EXPECT_EQ(printableLines(""), "");
 }
 
 TEST_F(LoadImageTest, DamagedImagesAreSurvived) {

@@ -212,6 +212,16 @@ TEST_F(LoadMaterialTest, WhatIsOutOfRangeIsRefusedByPointer) {
     }
 }
 
+/// Its square would leave single precision.
+TEST_F(LoadMaterialTest, NormalMapsAreScaledWithinReason) {
+    json document = texturedDocument(whiteImage(folder_));
+    json& normal = document["materials"][0]["normalTexture"];
+    normal = {{"index", 0}, {"scale", 1e30}};
+    EXPECT_MENTIONS(failure(document), "/materials/0/normalTexture/scale: is 1e+30");
+    normal["scale"] = -1e6;
+    EXPECT_EQ(load(document).materials.at(0).normalScale, -1e6);
+}
+
 TEST_F(LoadMaterialTest, WhatIsNotSupportedYetIsNamed) {
     json document = documentOf(json::object());
     const std::vector<std::string> names = {"KHR_materials_clearcoat",   "KHR_materials_sheen",
@@ -221,6 +231,16 @@ TEST_F(LoadMaterialTest, WhatIsNotSupportedYetIsNamed) {
     const Scene scene = load(document);
     EXPECT_EQ(scene.warnings.size(), names.size());
     for (const std::string& name : names) EXPECT_TRUE(mentions(scene.warnings, name + " is not supported; ignored"));
+}
+
+TEST_F(LoadMaterialTest, WhatIsNotSupportedIsNamedAtTheFirstMaterialThatHasIt) {
+    json document = documentOf(json::object());
+    const json material = {{"extensions", {{"KHR_materials_clearcoat", json::object()}}}};
+    for (int i = 0; i < 2; ++i) document["materials"].push_back(material);
+    document["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_materials_sheen"};
+    EXPECT_EQ(load(document).warnings,
+              (std::vector<std::string>{"/materials/1/extensions: KHR_materials_clearcoat is not supported; ignored",
+                                        "/extensionsUsed/1: KHR_materials_sheen is not supported; ignored"}));
 }
 
 } // namespace

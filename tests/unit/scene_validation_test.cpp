@@ -104,7 +104,7 @@ TEST(SceneValidation, FactorsLieInTheirRanges) {
     expectRange(&Material::thickness, {0.0, 1e6}, {-1.0, kNaN, kInfinity});
     expectRange(&Material::attenuationDistance, {1e-9, kInfinity}, {0.0, -1.0, kNaN});
     expectRange(&Material::alphaCutoff, {0.0, 0.5, 1.5}, {-0.1, kNaN, kInfinity});
-    expectRange(&Material::normalScale, {-1.0, 0.0, 3.0}, {kNaN, kInfinity});
+    expectRange(&Material::normalScale, {-1.0, 0.0, 3.0}, {kNaN, kInfinity, 1e30});
 }
 
 TEST(SceneValidation, ColoursLieInTheirRanges) {
