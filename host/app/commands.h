@@ -11,6 +11,7 @@ namespace isolux {
 
 void addRenderCommand(CLI::App& app, ExitCode& result);
 void addCompareCommand(CLI::App& app, ExitCode& result);
+void addConvergeCommand(CLI::App& app, ExitCode& result);
 void addVerifyCommand(CLI::App& app, ExitCode& result);
 void addSceneCommand(CLI::App& app, ExitCode& result);
 void addDevicesCommand(CLI::App& app, ExitCode& result);

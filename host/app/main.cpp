@@ -24,10 +24,12 @@ int run(int argumentCount, char** arguments) {
                "  isolux scene scene.glb\n"
                "  isolux verify scene.glb\n"
                "  isolux compare image.exr reference.exr --max-relative-bias 0.01\n"
+               "  isolux converge scene.glb -o out --variant mis --variant 'light:--light-sampling light'\n"
                "`isolux COMMAND --help` shows a command's options.");
     isolux::ExitCode result = isolux::ExitCode::success;
     isolux::addRenderCommand(app, result);
     isolux::addCompareCommand(app, result);
+    isolux::addConvergeCommand(app, result);
     isolux::addVerifyCommand(app, result);
     isolux::addSceneCommand(app, result);
     isolux::addDevicesCommand(app, result);

@@ -122,14 +122,15 @@ std::uint64_t Film::maxSampleCount() const {
 }
 
 double estimatedRelativeRmse(const Film& film) {
-    double luminanceSum = 0.0;
-    double varianceSum = 0.0; // of the pixels' means
+    Vec3d sum(0.0);
+    Vec3d varianceSum(0.0); // of the pixels' means
     for (const PixelStatistics& pixel : film.pixels) {
         if (pixel.sampleCount < 2) return std::numeric_limits<double>::quiet_NaN();
-        luminanceSum += luminance(pixel.mean);
-        varianceSum += pixel.luminanceVariance() / static_cast<double>(pixel.sampleCount);
+        sum += pixel.mean;
+        varianceSum += pixel.variance() / static_cast<double>(pixel.sampleCount);
     }
-    return std::sqrt(varianceSum * static_cast<double>(film.pixels.size())) / luminanceSum;
+    const double values = 3.0 * static_cast<double>(film.pixels.size());
+    return std::sqrt(glm::dot(varianceSum, Vec3d(1.0)) * values) / glm::dot(sum, Vec3d(1.0));
 }
 
 } // namespace isolux

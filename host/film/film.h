@@ -120,8 +120,9 @@ struct Film {
     [[nodiscard]] std::uint64_t maxSampleCount() const;
 };
 
-/// Relative RMSE of the image's luminance, estimated from its own variance: sqrt(mean of variance_Y / samples) / mean
-/// luminance. NaN while a pixel has fewer than two samples, as its variance is unknown.
+/// Relative RMSE of the image, estimated from its own variance: sqrt(mean of variance / samples) / mean, both means
+/// over the pixels and R, G and B, which is what `compare` measures. NaN while a pixel has fewer than two samples, as
+/// its variance is unknown.
 [[nodiscard]] double estimatedRelativeRmse(const Film& film);
 
 } // namespace isolux

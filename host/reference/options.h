@@ -1,8 +1,11 @@
 // How the reference renders: choices that must not change the expectation of the image.
 #pragma once
 
+#include "core/progress.h"
 #include "film/sample_plan.h"
 #include "scene/render_settings.h"
+
+#include <functional>
 
 namespace isolux {
 
@@ -21,6 +24,8 @@ struct ReferenceOptions {
     SideRule sides = SideRule::geometric;
     TraversalCounts counts = TraversalCounts::off;
     StoppingRule stopping{};
+    /// Told after each pass what is done; saying `no` ends the render there. May be empty.
+    std::function<Continue(const Film&)> pass{};
 };
 
 } // namespace isolux

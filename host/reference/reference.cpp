@@ -59,6 +59,7 @@ public:
             renderPass(*pass);
             film_.refineVariance();
             if (progress && progress(plan.fraction(1.0)) == Continue::no) break;
+            if (options_.pass && options_.pass(film_) == Continue::no) break;
         }
         return std::move(film_);
     }

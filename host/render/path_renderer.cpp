@@ -197,6 +197,13 @@ void PathRenderer::setMaxDepth(std::uint32_t maxDepth) {
     writeParameters();
 }
 
+void PathRenderer::setSeed(std::uint64_t seed) {
+    settings_.seed = seed;
+    parameters_.imageSeed.z = static_cast<std::uint32_t>(seed);
+    parameters_.imageSeed.w = static_cast<std::uint32_t>(seed >> 32);
+    writeParameters();
+}
+
 void PathRenderer::createKernel() {
     KernelSource source;
     source.spirv = kernels::path;
@@ -237,11 +244,12 @@ double PathRenderer::dispatch(const Pass& chunk, std::uint32_t budget, Lanes lan
 void PathRenderer::render(Film& film, const Tile& region, const ProgressCallback& progress) {
     if (options_.aovs == Aovs::on) film.keepAovs();
     if (keepsSamples()) film.keepReplicates();
-    SamplePlan plan(options_.stopping, {settings_.firstSample, settings_.sampleCount}, FirstPasses::full,
+    SamplePlan plan(options_.stopping, {settings_.firstSample, settings_.sampleCount}, options_.firstPasses,
                     orderPixels(region, maxLanes_));
     while (const std::optional<Pass> pass = plan.next(film)) {
         const auto passProgress = [&](double part) { return progress(plan.fraction(part)); };
         if (renderPass(film, *pass, passProgress) == Continue::no) return;
+        if (options_.pass && options_.pass(film) == Continue::no) return;
     }
 }
 

@@ -29,6 +29,9 @@ struct RenderOptions {
     Aovs aovs = Aovs::off;
     TraversalCounts counts = TraversalCounts::off;
     StoppingRule stopping;
+    FirstPasses firstPasses = FirstPasses::full;
+    /// Told after each pass what is done; saying `no` ends the render there. May be empty.
+    std::function<Continue(const Film&)> pass;
     std::function<void(std::string_view)> stage; ///< told what is being prepared; may be empty
     std::optional<SceneFeatures> features;       ///< instead of what the scene needs (for tests and benchmarks)
     std::optional<std::uint32_t> maxLanes;       ///< instead of what suits the device
@@ -61,6 +64,9 @@ public:
     /// specialised to.
     void setSamples(const SampleRange& samples);
     void setMaxDepth(std::uint32_t maxDepth);
+    /// Other random numbers, and other reasons to stop.
+    void setSeed(std::uint64_t seed);
+    void setStopping(const StoppingRule& stopping) { options_.stopping = stopping; }
 
     [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
 

@@ -38,9 +38,13 @@ struct ErrorSample {
 /// How sure the references are.
 struct ReferenceQuality {
     double samplesPerPixel = 0.0;   ///< of both together; 0: unknown
-    double mean = 0.0;              ///< of R, G and B
+    double mean = 0.0;              ///< of R, G and B; 0: unknown, then it follows from the samples
     double mse = 0.0;               ///< mean variance of r, the mean of both, from their difference
     double relativeBiasError = 0.0; ///< standard error of mean luminance, relative to it
+    std::uint64_t pixels = 0;       ///< 0: unknown, as are then rays per pixel
+
+    /// Of r itself; NaN if the mean is not known.
+    [[nodiscard]] double relativeRmse() const;
 };
 
 /// How often intervals of 95 % hold what they should, over seeds (and pixels). Shares have Wilson's interval (1927).
@@ -61,9 +65,9 @@ struct Calibration {
 /// Aggregated over the seeds of a variant; intervals over seeds.
 struct CheckpointSummary {
     double samplesPerPixel = 0.0;
-    double raysPerPixel = 0.0;
-    double wallSeconds = 0.0; ///< median
-    double deviceSeconds = 0.0;
+    double raysPerPixel = 0.0;  ///< NaN if the number of pixels is not known
+    double wallSeconds = 0.0;   ///< median
+    double deviceSeconds = 0.0; ///< median
     Interval mse, relMse, relMseTrimmed, mae, flip, bias, relativeRmse, estimate;
     Interval biasSquared; ///< mean over pixels of the squared bias: mean[(x_i - r1)(x_j - r2)], i and j different seeds
     std::optional<Calibration> calibration;
@@ -110,10 +114,14 @@ struct FitOptions {
     std::uint32_t resamples = 2000;         ///< of the bootstrap
 };
 
-/// Everything that follows from the samples alone. Variants in the order in which they first appear. Throws Error (bad
-/// input) if a variant's seeds have different checkpoints or a time is not above 0.
+/// Everything that follows from the samples alone; biasSquared and calibration are the caller's to fill in. Variants in
+/// the order in which they first appear; times are wall seconds of rendering. Throws Error (bad input) if a variant's
+/// seeds have different checkpoints or a time is not above 0.
 [[nodiscard]] ConvergenceReport summarise(const std::vector<ErrorSample>& samples, const ReferenceQuality& reference,
                                           const FitOptions& options);
+
+/// The checkpoints ("variant@checkpoint") for which the reference is too noisy: its variance is above 1 % of their MSE.
+[[nodiscard]] std::vector<std::string> tooNoisyFor(const ConvergenceReport& report, const ReferenceQuality& reference);
 
 /// "variant B reaches 5 % relative RMSE 3.4 (3.1-3.7) times sooner than A"
 [[nodiscard]] std::string sentence(const SpeedRatio& ratio);
@@ -123,6 +131,9 @@ struct FitOptions {
 [[nodiscard]] std::vector<ErrorSample> fromCsv(const std::string& text, const std::string& where);
 
 [[nodiscard]] std::string toText(const ConvergenceReport& report);
+/// {"errors", "variants", "ratios"}
 [[nodiscard]] nlohmann::ordered_json toJson(const ConvergenceReport& report);
+/// {"samplesPerPixel", "relativeRmse", "relativeBiasError"}
+[[nodiscard]] nlohmann::ordered_json toJson(const ReferenceQuality& reference);
 
 } // namespace isolux

@@ -115,11 +115,11 @@ TEST(PixelReplicates, SaysHowFarLowDiscrepancyMeansScatter) {
 TEST(EstimatedRelativeRmse, IsTheRootOfTheMeanVarianceOverTheMean) {
     Film film(2, 1);
     for (int s = 0; s < 4; ++s) {
-        film.pixels[0].add(Vec3d(s % 2 == 0 ? 1.0 : 3.0));
-        film.pixels[1].add(Vec3d(4.0));
+        film.pixels[0].add(s % 2 == 0 ? Vec3d(1.0, 2.0, 0.0) : Vec3d(3.0, 2.0, 0.0));
+        film.pixels[1].add(Vec3d(4.0, 2.0, 1.0));
     }
-    // Variances of the means: 4/3/4 and 0; mean luminance 3.
-    EXPECT_NEAR(estimatedRelativeRmse(film), std::sqrt(0.5 / 3.0) / 3.0, 1e-15);
+    // Variances of the means: 4/3/4 in one of six values, else 0; the values' mean is (2 + 2 + 0 + 4 + 2 + 1) / 6.
+    EXPECT_NEAR(estimatedRelativeRmse(film), std::sqrt(1.0 / 3.0 / 6.0) / (11.0 / 6.0), 1e-15);
 }
 
 TEST(EstimatedRelativeRmse, IsUnknownWhileAPixelHasOneSample) {
