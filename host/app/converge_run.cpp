@@ -14,7 +14,7 @@
 namespace isolux {
 namespace {
 
-constexpr std::uint32_t kWarmUpSamples = 4;
+constexpr std::uint32_t kWarmUpSamples = 8;
 /// Seeds of warm-ups: of no variant, and below those of references.
 constexpr std::uint64_t kWarmUpSeed = std::uint64_t{1} << 62;
 
@@ -32,6 +32,14 @@ std::vector<Job> shuffledJobs(std::size_t variants, const ConvergeLimits& limits
     std::mt19937_64 random(1);
     for (std::size_t left = jobs.size(); left > 1; --left) std::swap(jobs[left - 1], jobs[random() % left]);
     return jobs;
+}
+
+/// Renders a little; how many seconds it took.
+double warmUp(SeedRenderer& renderer) {
+    const Stopwatch watch;
+    const auto progress = [](double) { return interruptRequested() ? Continue::no : Continue::yes; };
+    static_cast<void>(renderer.render({kWarmUpSeed, kWarmUpSamples, {}}, {}, progress));
+    return watch.seconds();
 }
 
 /// Whether the seed is whole.
@@ -85,10 +93,8 @@ std::vector<MeasuredVariant> prepareVariants(const std::vector<Variant>& variant
     for (const Variant& variant : variants) {
         MeasuredVariant next{variant, makeSeedRenderer(device, run.scene, variant.settings, dispatchSeconds)};
         next.setupSeconds = run.loadSeconds + next.renderer->setupSeconds();
-        const RenderClock clock;
-        const auto progress = [](double) { return interruptRequested() ? Continue::no : Continue::yes; };
-        static_cast<void>(next.renderer->render({kWarmUpSeed, kWarmUpSamples, {}}, {}, progress));
-        next.secondsPerSample = clock.seconds() / kWarmUpSamples;
+        warmUp(*next.renderer); // drivers, caches and the length of dispatches
+        next.secondsPerSample = warmUp(*next.renderer) / kWarmUpSamples;
         measured.push_back(std::move(next));
     }
     return measured;

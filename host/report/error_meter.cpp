@@ -1,6 +1,7 @@
 #include "report/error_meter.h"
 
 #include "core/error.h"
+#include "report/bias.h"
 #include "report/flip.h"
 #include "report/image_view.h"
 #include "report/metrics.h"
@@ -23,6 +24,15 @@ void requireFinite(const ImageView& view, std::uint32_t width) {
         if (!isFinite(view.color(pixel)))
             throwBadInput("reference", fmt::format("pixel ({}, {}) is not finite", pixel % width, pixel / width));
     }
+}
+
+void requirePair(const Image& first, const Image& second) {
+    if (first.width != second.width || first.height != second.height) {
+        throwBadInput("reference", fmt::format("the two references differ in size: {} x {} and {} x {}", first.width,
+                                               first.height, second.width, second.height));
+    }
+    if (shareSamples(first.metadata, second.metadata))
+        throwBadInput("reference", "the two references share random numbers: their noise would count as error");
 }
 
 /// Of one image; 0 if it does not say.
@@ -92,11 +102,8 @@ ErrorSample unknownErrors(const Film& film) {
 
 } // namespace
 
-ErrorMeter::ErrorMeter(Image first, Image second) {
-    if (first.width != second.width || first.height != second.height) {
-        throwBadInput("reference", fmt::format("the two references differ in size: {} x {} and {} x {}", first.width,
-                                               first.height, second.width, second.height));
-    }
+ErrorMeter::ErrorMeter(const Image& first, const Image& second) {
+    requirePair(first, second);
     const ImageView a(first, "first reference");
     const ImageView b(second, "second reference");
     requireFinite(a, first.width);
@@ -121,7 +128,7 @@ ErrorMeter::ErrorMeter(Image first, Image second) {
     quality_.samplesPerPixel = samples > 0.0 && others > 0.0 ? samples + others : 0.0;
 }
 
-ErrorMeter::ErrorMeter(Image reference) {
+ErrorMeter::ErrorMeter(const Image& reference) {
     const ImageView view(reference, "reference");
     requireFinite(view, reference.width);
     if (view.varianceSource() == VarianceSource::none) {

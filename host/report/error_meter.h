@@ -27,11 +27,11 @@ struct ReferencePixel {
 class ErrorMeter {
 public:
     /// Two images of the same size by independent random numbers. Throws Error (bad input) if sizes or channels do not
-    /// fit, or a pixel is not finite.
-    ErrorMeter(Image first, Image second);
+    /// fit, a pixel is not finite, or the metadata say that they share samples (`shareSamples`).
+    ErrorMeter(const Image& first, const Image& second);
     /// One image that carries its own variance (`variance.R/G/B` with `samples.Y`, or `se.R/G/B`): E[(x - r)^2] minus
     /// the mean variance of r takes the place of the product of two differences. Throws Error if it carries none.
-    explicit ErrorMeter(Image reference);
+    explicit ErrorMeter(const Image& reference);
 
     [[nodiscard]] const ReferenceQuality& quality() const { return quality_; }
     [[nodiscard]] const Image& reference() const { return mean_; } ///< the mean of both: R, G and B

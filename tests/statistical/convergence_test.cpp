@@ -3,6 +3,7 @@
 #include "load/gltf.h"
 #include "report/convergence.h"
 #include "report/run_report.h"
+#include "report/statistics.h"
 #include "support/program.h"
 #include "support/render.h"
 #include "support/scenes.h"
@@ -34,10 +35,17 @@ protected:
 
 Interval intervalOf(const json& value) { return {value.at(0), value.at(1), value.at(2)}; }
 
+/// An interval over 16 seeds at a confidence of 99.9 % instead of 95 %: several are tested, and one in twenty fails.
+Interval widened(const Interval& interval) {
+    const double factor = studentQuantile(0.9995, 15.0) / studentQuantile(0.975, 15.0);
+    return {interval.estimate - factor * (interval.estimate - interval.low), interval.estimate,
+            interval.estimate + factor * (interval.high - interval.estimate)};
+}
+
 /// Seeds are fixed, so the intervals are the same each time but for the rounding of the driver.
 TEST_F(Convergence, ErrorsFallAsTheoryHasIt) {
     const json report = converge("--width 32 --max-spp 128 --reference-spp 2048 --flip-seeds 0 --variant mis "
-                                 "--variant 'light:--light-sampling light' --variant 'sobol:--pixel-sampler sobol'");
+                                 "--variant 'bsdf:--light-sampling bsdf' --variant 'sobol:--pixel-sampler sobol'");
     ASSERT_TRUE(report.is_object());
     for (const json& variant : report.at("variants")) {
         const std::string name = variant.at("name");
@@ -49,7 +57,8 @@ TEST_F(Convergence, ErrorsFallAsTheoryHasIt) {
             EXPECT_TRUE(slope.contains(-1.0)) << name << variant.at("slopeSamples");
         EXPECT_LE(intervalOf(variant.at("floor")).low, 0.0) << name << ": a plateau is bias";
         EXPECT_TRUE(variant.at("slopeHolds")) << name;
-        EXPECT_TRUE(intervalOf(variant.at("checkpoints").back().at("bias")).contains(0.0)) << name;
+        const Interval bias = intervalOf(variant.at("checkpoints").back().at("bias"));
+        EXPECT_TRUE(widened(bias).contains(0.0)) << name;
         EXPECT_EQ(variant.at("checkpoints").size(), 8u) << name;
     }
     EXPECT_EQ(report.at("seeds").size(), 16u);
@@ -57,7 +66,7 @@ TEST_F(Convergence, ErrorsFallAsTheoryHasIt) {
 
 // --- Calibration ---
 
-constexpr std::uint64_t kReplicatesOfRender = 512;
+constexpr std::uint64_t kReplicatesOfRender = 768;
 
 struct CalibratedRender {
     std::string name;
@@ -67,7 +76,8 @@ struct CalibratedRender {
 
 RenderSettings tinyImage(std::uint32_t samples, PixelSampler sampler) {
     RenderSettings settings;
-    settings.width = settings.height = 12;
+    settings.width = 16; // two workgroups: as many as processors
+    settings.height = 8;
     settings.sampleCount = samples;
     settings.sampler = sampler;
     return settings;
@@ -87,13 +97,13 @@ std::vector<Interval> meansOf(const Device& device, const Scene& scene, const Ca
     return means;
 }
 
-/// The nominal 95 % interval of the image's mean luminance holds the truth in 93 to 97 % of 512 renders, two standard
-/// deviations of such a share. The truth is the mean of the renders with Sobol's points, which are unbiased: its
-/// variance is 1 / 512 of one of them, and moves the shares by less than a thousandth.
+/// The nominal 95 % interval of the image's mean luminance holds the truth in 93 to 97 % of 768 renders, two and
+/// a half standard deviations of such a share. The truth is the mean of the renders with Sobol's points, which are
+/// unbiased: its variance is 1 / 768 of one of them, and moves the shares by less than a thousandth.
 TEST(Calibration, IntervalsOfTheMeanHoldWhatTheySay) {
     const Scene scene = loadScene(projectScene("cornell_box"));
     const Device device({});
-    const StoppingRule adaptive{std::nullopt, AdaptiveRule{0.2, 32, 64}, std::nullopt};
+    const StoppingRule adaptive{std::nullopt, AdaptiveRule{0.4, 32, 64}, std::nullopt};
     const std::vector<CalibratedRender> renders{{"sobol", tinyImage(64, PixelSampler::sobol), {}},
                                                 {"independent", tinyImage(64, PixelSampler::independent), {}},
                                                 {"adaptive", tinyImage(512, PixelSampler::independent), adaptive}};

@@ -170,6 +170,10 @@ TEST(ErrorMeter, RefusesReferencesThatDoNotServe) {
               }),
               "reference: pixel (1, 1) is not finite");
     expectMentions(refusal([] { (void)ErrorMeter(uniformImage(2, 2, 1.0f)); }), "reference: carries no variance");
+    Image seeded = uniformImage(1, 1, 1.0f);
+    seeded.metadata["isolux/seed"] = std::int64_t{7};
+    seeded.metadata["isolux/sampleCount"] = std::int64_t{64};
+    expectMentions(refusal([&] { ErrorMeter(seeded, seeded); }), "reference: the two references share random numbers");
     expectMentions(refusal([] { (void)exactMeter().measure(Film(2, 3), MeasureFlip::no); }),
                    "reference: is 16 x 16, the image 2 x 3");
 }
