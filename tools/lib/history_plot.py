@@ -52,7 +52,9 @@ def set_places(axes, runs):
     axes.set_xlim(-0.5, len(runs) - 0.5)
     axes.xaxis.set_major_locator(FixedLocator(range(0, len(runs), step)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda place, _: label_of(runs[round(place)])))
-    axes.tick_params(axis="x", labelsize=8.5, labelrotation=35 if len(runs) > 5 else 0)
+    crowded = len(runs) > 5
+    pyplot.setp(axes.get_xticklabels(), fontsize=8.5, rotation=35 if crowded else 0, ha="right" if crowded else "center",
+                rotation_mode="anchor" if crowded else "default")
 
 
 def draw_panel(axes, runs, name):
