@@ -3,8 +3,8 @@
 #include "load/bytes.h"
 #include "load/context.h"
 #include "load/exr_header.h"
+#include "load/memory_reader.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -53,8 +53,7 @@ void setLimits(const LoadLimits& limits) {
 class Decoder {
 public:
     Decoder(Bytes bytes, const Format& format, const LoadContext& context)
-        : bytes_(std::move(bytes)), reader_(bytes_.data(), bytes_.size()),
-          input_(OIIO::ImageInput::create(std::string(format.name))) {
+        : bytes_(std::move(bytes)), reader_(bytes_), input_(OIIO::ImageInput::create(std::string(format.name))) {
         setLimits(context.limits());
         OIIO::ImageSpec spec;
         if (!input_ || !input_->set_ioproxy(&reader_))
@@ -67,7 +66,7 @@ public:
 
 private:
     Bytes bytes_;
-    OIIO::Filesystem::IOMemReader reader_;
+    MemoryReader reader_;
     std::unique_ptr<OIIO::ImageInput> input_;
 };
 

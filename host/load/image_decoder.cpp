@@ -1,10 +1,10 @@
 #include "load/image_decoder.h"
 
 #include "load/context.h"
+#include "load/memory_reader.h"
 #include "load/uri.h"
 #include "load/webp.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -152,9 +152,7 @@ int mostMegabytes(const LoadLimits& limits) {
 /// OpenImageIO's decoder of one image in memory.
 class Decoder {
 public:
-    Decoder(const EncodedImage& image, const Format& format)
-        // Never written to: the type is that of the interface.
-        : bytes_(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size()) {
+    Decoder(const EncodedImage& image, const Format& format) : bytes_(image.bytes) {
         requireWhole(image, format);
         if (format.mimeType == "image/webp") {
             const WebpSize size = *webpSize(image.bytes);
@@ -176,7 +174,7 @@ public:
     [[nodiscard]] OIIO::ImageInput& input() { return *input_; }
 
 private:
-    OIIO::Filesystem::IOMemReader bytes_;
+    MemoryReader bytes_;
     std::unique_ptr<OIIO::ImageInput> input_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -53,6 +54,27 @@ TEST_F(LoadEnvironmentTest, OpenExrIsReadAsStored) {
     EXPECT_EQ(map->width, 2u);
     EXPECT_EQ(map->height, 2u);
     EXPECT_EQ(map->texels, (std::vector<Vec3f>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {1e6f, 0, 0.125f}}));
+}
+
+/// The only chunk of a small file is said to begin where its table of offsets ends; elsewhere outside the file nothing
+/// may be read.
+TEST_F(LoadEnvironmentTest, OffsetsOutsideTheFileAreRefused) {
+    for (const std::int64_t offset : {std::int64_t{-1}, std::int64_t{1} << 40}) {
+        const fs::path path = write("offset.exr", sized(2, 2, 3), std::vector<float>(12, 1.0f));
+        std::vector<char> bytes(fs::file_size(path));
+        std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        std::size_t entry = 0;
+        const auto valueAt = [&](std::size_t place) {
+            std::uint64_t value = 0;
+            std::memcpy(&value, bytes.data() + place, sizeof(value));
+            return value;
+        };
+        while (entry + 8 < bytes.size() && valueAt(entry) != entry + 8) ++entry;
+        ASSERT_LT(entry + 8, bytes.size()) << "no table found";
+        std::memcpy(bytes.data() + entry, &offset, sizeof(offset));
+        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        EXPECT_NE(failure(path).find("cannot be decoded"), std::string::npos) << offset;
+    }
 }
 
 TEST_F(LoadEnvironmentTest, AlphaIsIgnoredAndGreyRepeated) {
