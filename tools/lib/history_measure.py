@@ -150,15 +150,21 @@ def git(*words):
     return result.stdout.strip() if result.returncode == 0 else None
 
 
-def circumstances(program, turn):
-    """When, which Isolux, and on what."""
-    device = turn["rays"]["device"]
+def identity(program):
+    """When, and which Isolux: asked before the run, during which the sources may change."""
     return {
         "schema": SCHEMA,
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "revision": git("rev-parse", "--short=9", "HEAD") or "unknown",
         "dirty": bool(git("status", "--porcelain", "--untracked-files=no")),
         "version": call([program, "--version"]).split()[-1],
+    }
+
+
+def circumstances(turn):
+    """On what, as a round tells."""
+    device = turn["rays"]["device"]
+    return {
         "machine": {"cpu": cpu_model(), "cores": len(os.sched_getaffinity(0))},
         "device": device["name"],
         "driver": f"{device['driver']} {device['driverVersion']}",
@@ -169,6 +175,7 @@ def circumstances(program, turn):
 
 def measure(program, effort, tell):
     """A run. The first round compiles kernels and makes the references, and is not counted; each begins at another turn."""
+    began = identity(program)
     with tempfile.TemporaryDirectory() as folder:
         turns = Programs(program, effort, pathlib.Path(folder)).turns()
         names = list(turns)
@@ -180,4 +187,4 @@ def measure(program, effort, tell):
             found = {name: turns[name]() for name in names[start:] + names[:start]}
             rounds.append(raw_figures(found))
             tell(f"round {number + 1} of {effort['rounds']}")
-        return {**circumstances(program, found), **summary(rounds)}
+        return {**began, **circumstances(found), **summary(rounds)}
