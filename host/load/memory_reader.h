@@ -5,39 +5,24 @@
 
 #include <OpenImageIO/filesystem.h>
 
-#include <algorithm>
-#include <cstring>
-
 namespace isolux {
 
-/// The bytes must outlive it. Nothing outside of them is read: what lies there counts as the end of the file.
-class MemoryReader : public OIIO::Filesystem::IOProxy {
+/// The bytes must outlive it. Nothing outside of them is read: no offset leads there. (The decoder of JPEG knows its
+/// base by name, and takes the bytes from that.)
+class MemoryReader : public OIIO::Filesystem::IOMemReader {
 public:
-    explicit MemoryReader(ByteSpan bytes) : IOProxy("", Read), bytes_(bytes) {}
+    explicit MemoryReader(ByteSpan bytes) : IOMemReader(bytes.data(), bytes.size()) {}
 
-    [[nodiscard]] const char* proxytype() const override { return "memory"; }
-    [[nodiscard]] std::size_t size() const override { return bytes_.size(); }
-
-    bool seek(std::int64_t offset) override {
-        if (offset < 0 || static_cast<std::uint64_t>(offset) > bytes_.size()) return false;
-        m_pos = offset;
-        return true;
-    }
-    std::size_t read(void* target, std::size_t count) override {
-        const std::size_t done = pread(target, count, m_pos);
-        m_pos += static_cast<std::int64_t>(done);
-        return done;
-    }
+    bool seek(std::int64_t offset) override { return isInside(offset) && IOMemReader::seek(offset); }
     std::size_t pread(void* target, std::size_t count, std::int64_t offset) override {
-        if (offset < 0 || static_cast<std::uint64_t>(offset) >= bytes_.size()) return 0;
-        const ByteSpan rest = bytes_.subspan(static_cast<std::size_t>(offset));
-        const std::size_t done = std::min(count, rest.size());
-        std::memcpy(target, rest.data(), done);
-        return done;
+        return isInside(offset) ? IOMemReader::pread(target, count, offset) : 0;
     }
 
 private:
-    ByteSpan bytes_;
+    /// The end included.
+    [[nodiscard]] bool isInside(std::int64_t offset) const {
+        return offset >= 0 && static_cast<std::uint64_t>(offset) <= size();
+    }
 };
 
 } // namespace isolux
