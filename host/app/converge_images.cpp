@@ -87,6 +87,7 @@ EqualTimeImages writeImages(const std::filesystem::path& folder, const std::vect
     images.seconds = equalSeconds(variants);
     writeImage(folder / images.reference, meter.reference());
     std::vector<std::string> names;
+    names.reserve(variants.size());
     for (const MeasuredVariant& measured : variants) names.push_back(measured.variant.name);
     const std::vector<std::string> files = fileNames(names);
     const ProgressCallback whole = bar.callback();

@@ -1,6 +1,7 @@
 #include "load/image_decoder.h"
 
 #include "load/context.h"
+#include "load/image_metadata.h"
 #include "load/memory_reader.h"
 #include "load/uri.h"
 #include "load/webp.h"
@@ -152,7 +153,7 @@ int mostMegabytes(const LoadLimits& limits) {
 /// OpenImageIO's decoder of one image in memory.
 class Decoder {
 public:
-    Decoder(const EncodedImage& image, const Format& format) : bytes_(image.bytes) {
+    Decoder(const EncodedImage& image, const Format& format) : kept_(withoutMetadata(image.bytes)), bytes_(kept_) {
         requireWhole(image, format);
         if (format.mimeType == "image/webp") {
             const WebpSize size = *webpSize(image.bytes);
@@ -174,6 +175,7 @@ public:
     [[nodiscard]] OIIO::ImageInput& input() { return *input_; }
 
 private:
+    Bytes kept_;
     MemoryReader bytes_;
     std::unique_ptr<OIIO::ImageInput> input_;
 };

@@ -18,16 +18,32 @@ std::uint32_t readNumber(ByteSpan bytes, std::size_t count) {
 
 std::string_view asText(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
+using Chunk = std::span<std::uint8_t>;
+
+/// Makes a chunk one that decoders skip.
+void rename(Chunk name) { std::fill(name.begin(), name.end(), std::uint8_t{'_'}); }
+
 /// Removes what one chunk says of alpha: a flag of VP8X and of VP8L (its 29th bit after a byte of signature), and the
-/// whole of ALPH, which is renamed to one that decoders skip.
-void removeAlpha(std::span<std::uint8_t> name, std::span<std::uint8_t> data) {
+/// whole of ALPH.
+void removeAlpha(Chunk name, Chunk data) {
     const std::string_view text = asText(name);
     if (text == "VP8X" && !data.empty())
         data[0] &= static_cast<std::uint8_t>(~kAlphaFlag);
     else if (text == "VP8L" && data.size() > 4)
         data[4] &= static_cast<std::uint8_t>(~kAlphaFlag);
     else if (text == "ALPH")
-        std::fill(name.begin(), name.end(), std::uint8_t{'_'});
+        rename(name);
+}
+
+/// Calls `change(name, data)` for every chunk.
+template <typename Change> void forChunks(Chunk webp, const Change& change) {
+    Chunk rest = webp.subspan(std::min(kHeaderBytes, webp.size()));
+    while (rest.size() >= kChunkHeaderBytes) {
+        const Chunk data = rest.subspan(kChunkHeaderBytes);
+        const std::size_t length = std::min(std::size_t{readNumber(rest.subspan(4), 4)}, data.size());
+        change(rest.first(4), data.first(length));
+        rest = data.subspan(std::min(length + length % 2, data.size())); // chunks start at even bytes
+    }
 }
 
 } // namespace
@@ -49,15 +65,15 @@ std::optional<WebpSize> webpSize(ByteSpan webp) {
 
 Bytes withoutAlpha(ByteSpan webp) {
     Bytes result(webp.begin(), webp.end());
-    std::span<std::uint8_t> rest(result);
-    rest = rest.subspan(std::min(kHeaderBytes, rest.size()));
-    while (rest.size() >= kChunkHeaderBytes) {
-        const std::span<std::uint8_t> data = rest.subspan(kChunkHeaderBytes);
-        const std::size_t length = std::min(std::size_t{readNumber(rest.subspan(4), 4)}, data.size());
-        removeAlpha(rest.first(4), data.first(length));
-        rest = data.subspan(std::min(length + length % 2, data.size())); // chunks start at even bytes
-    }
+    forChunks(result, removeAlpha);
     return result;
+}
+
+void blankWebpMetadata(std::span<std::uint8_t> webp) {
+    forChunks(webp, [](Chunk name, Chunk) {
+        const std::string_view text = asText(name);
+        if (text == "EXIF" || text == "XMP " || text == "ICCP") rename(name);
+    });
 }
 
 } // namespace isolux

@@ -20,4 +20,7 @@ struct WebpSize {
 /// 2.4 whatever it is asked), which cannot be undone where alpha is small.
 [[nodiscard]] Bytes withoutAlpha(ByteSpan webp);
 
+/// Gives EXIF, XMP and ICCP chunks names that decoders skip.
+void blankWebpMetadata(std::span<std::uint8_t> webp);
+
 } // namespace isolux
