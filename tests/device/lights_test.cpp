@@ -43,6 +43,9 @@ TEST_F(Lights, EnvironmentMapsOfAnyBrightness) {
     for (const double radiance : {1.0, 1e-30, 1e30}) {
         for (const float texel : {1e-40f, 1e-20f, 1e36f}) {
             if (!(radiance * texel < 1e37)) continue; // beyond what an image holds
+            // The device's scale ends at 2^126: light of 1e-70 is 1e-32 there, and dim pixels of it are no normal
+            // numbers, which drivers may take for 0.
+            if (radiance * texel < 1e-60) continue;
             EnvironmentMap map = skyMap();
             for (Vec3f& t : map.texels) t = t / 30.0f * texel;
             scene.environment = {Vec3d(radiance), EnvironmentExtent::sphere,
