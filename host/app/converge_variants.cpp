@@ -36,13 +36,14 @@ struct ImageOption {
     bool (*differs)(const RenderSettings& a, const RenderSettings& b);
 };
 
-constexpr std::array<ImageOption, 7> kImageOptions{{
+constexpr std::array<ImageOption, 8> kImageOptions{{
     {"--max-depth", [](const RenderSettings& a, const RenderSettings& b) { return a.maxDepth != b.maxDepth; }},
     {"--integrator", [](const RenderSettings& a, const RenderSettings& b) { return a.integrator != b.integrator; }},
     {"--ao-distance",
      [](const RenderSettings& a, const RenderSettings& b) { return a.ambientDistance != b.ambientDistance; }},
     {"--bounces", [](const RenderSettings& a, const RenderSettings& b) { return a.bounces != b.bounces; }},
     {"--light", [](const RenderSettings& a, const RenderSettings& b) { return a.light != b.light; }},
+    {"--back-faces", [](const RenderSettings& a, const RenderSettings& b) { return a.backFaces != b.backFaces; }},
     {"--pixel-filter",
      [](const RenderSettings& a, const RenderSettings& b) {
          return a.filter.kind != b.filter.kind || a.filter.radius != b.filter.radius;
@@ -125,19 +126,21 @@ std::vector<Variant> parseVariants(const std::vector<std::string>& texts, const 
 }
 
 RenderSettings referenceSettings(const RenderSettings& settings) {
-    RenderSettings usual;
-    usual.width = settings.width;
-    usual.height = settings.height;
-    usual.camera = settings.camera;
-    usual.lens = settings.lens;
-    usual.filter = settings.filter;
-    usual.maxDepth = settings.maxDepth;
-    usual.integrator = settings.integrator;
-    usual.bounces = settings.bounces;
-    usual.light = settings.light;
-    usual.ambientDistance = settings.ambientDistance;
-    usual.roulette.start = kReferenceRouletteStart;
-    return usual;
+    const RenderSettings usual;
+    RenderSettings reference = settings; // what is not named below may change the image
+    reference.seed = usual.seed;
+    reference.sampler = usual.sampler;
+    reference.firstSample = usual.firstSample;
+    reference.sampleCount = usual.sampleCount;
+    reference.plannedSamples = usual.plannedSamples;
+    reference.lightSampling = usual.lightSampling;
+    reference.misHeuristic = usual.misHeuristic;
+    reference.lightChoice = usual.lightChoice;
+    reference.lightSamples = usual.lightSamples;
+    reference.roulette = usual.roulette;
+    reference.roulette.start = kReferenceRouletteStart;
+    reference.intersection = usual.intersection;
+    return reference;
 }
 
 } // namespace isolux

@@ -117,8 +117,8 @@ TEST_F(ConvergeCommandTest, WhatCannotBeMeantIsRefused) {
 }
 
 TEST_F(ConvergeCommandTest, VariantsConvergeToTheSameImage) {
-    for (const char* options : {"--max-depth 3", "--integrator albedo", "--light direct", "--pixel-filter triangle",
-                                "--aperture 0.1 --focus 5"}) {
+    for (const char* options : {"--max-depth 3", "--integrator albedo", "--light direct", "--back-faces culled",
+                                "--pixel-filter triangle", "--aperture 0.1 --focus 5"}) {
         const std::string name = std::string(options).substr(0, std::string(options).find(' '));
         expectRefused("--variant 'a:" + std::string(options) + "'", {"--variant 'a'", name, "outside of --variant"});
     }
@@ -139,6 +139,8 @@ TEST_F(ConvergeCommandTest, ReferencesAreKeptForTheImageTheyShow) {
     EXPECT_EQ(references().size(), 2u) << "more samples replace fewer";
     EXPECT_TRUE(contains(converge(brief + "--max-depth 2").output, "rendering two references"));
     EXPECT_EQ(references().size(), 4u);
+    EXPECT_TRUE(contains(converge(brief + "--back-faces culled").output, "rendering two references"));
+    EXPECT_EQ(references().size(), 6u);
 }
 
 TEST_F(ConvergeCommandTest, DamagedReferencesAreReplaced) {
