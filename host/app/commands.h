@@ -14,6 +14,7 @@ void addCompareCommand(CLI::App& app, ExitCode& result);
 void addConvergeCommand(CLI::App& app, ExitCode& result);
 void addVerifyCommand(CLI::App& app, ExitCode& result);
 void addSceneCommand(CLI::App& app, ExitCode& result);
+void addStressCommand(CLI::App& app, ExitCode& result);
 void addDevicesCommand(CLI::App& app, ExitCode& result);
 
 } // namespace isolux

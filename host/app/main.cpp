@@ -13,15 +13,9 @@
 
 namespace {
 
-/// "isolux 0.1.0 (4f0c1d2e3a4b)"
-std::string versionText() {
-    const std::string revision = isolux::sourceRevision();
-    return "isolux " ISOLUX_VERSION + (revision.empty() ? "" : " (" + revision + ")");
-}
-
 int run(int argumentCount, char** arguments) {
     CLI::App app("Isolux: a Vulkan compute path tracer that measures itself.");
-    app.set_version_flag("--version", versionText());
+    app.set_version_flag("--version", isolux::versionText());
     app.require_subcommand(1);
     app.failure_message([](const CLI::App*, const CLI::Error& error) {
         return fmt::format("isolux: error: {} (--help lists what there is)\n", error.what());
@@ -32,12 +26,14 @@ int run(int argumentCount, char** arguments) {
                "  isolux verify scene.glb\n"
                "  isolux compare image.exr reference.exr --max-relative-bias 0.01\n"
                "  isolux converge scene.glb -o out --variant mis --variant 'light:--light-sampling light'\n"
+               "  isolux stress --family scale\n"
                "`isolux COMMAND --help` shows a command's options.");
     isolux::ExitCode result = isolux::ExitCode::success;
     isolux::addRenderCommand(app, result);
     isolux::addCompareCommand(app, result);
     isolux::addConvergeCommand(app, result);
     isolux::addVerifyCommand(app, result);
+    isolux::addStressCommand(app, result);
     isolux::addSceneCommand(app, result);
     isolux::addDevicesCommand(app, result);
     try {

@@ -77,23 +77,8 @@ void checkSettings(const RenderSettings& settings) {
 
 } // namespace
 
-void addSceneOptions(CLI::App& command, SceneOptions& options) {
-    command.add_option("SCENE", options.file, "A glTF 2.0 file (.gltf or .glb)")->required();
-    command.add_option("--spp,--samples", options.samples, "Samples a pixel")->capture_default_str();
-    command.add_option("--first-sample", options.firstSample, "Index of the first sample")->capture_default_str();
-    CLI::Option* width = command.add_option("--width", options.width, "Image width in pixels");
-    CLI::Option* height =
-        command.add_option("--height", options.height, "Image height; by default from the width and the camera");
-    command.add_option("--size", options.size, "Both, as WxH")->excludes(width)->excludes(height);
-    command.add_option("--camera", options.camera, "Camera by number or part of its name (default: the first)");
-    command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
-    command.add_option("--max-depth", options.maxDepth,
-                       "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
+void addRunOptions(CLI::App& command, SceneOptions& options) {
     command.add_option("--device", options.device, "Vulkan device by number or part of its name (default: the best)");
-    command.add_option("--dispatch-ms", options.dispatchMilliseconds, "How long one dispatch should last, about")
-        ->check(finiteNumber())
-        ->check(CLI::Range(1.0, 1000.0))
-        ->capture_default_str();
     command.add_option("--progress", options.progress, "Bar or lines, JSON lines for programs, or nothing")
         ->check(CLI::IsMember({"auto", "json", "none"}))
         ->capture_default_str();
@@ -107,6 +92,25 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
                      "Run under the Vulkan validation layers; any message is a failure");
     command.add_flag("-q,--quiet", options.quiet, "Print errors alone");
     command.add_flag("-v,--verbose", options.verbose, "Say what is being done");
+}
+
+void addSceneOptions(CLI::App& command, SceneOptions& options) {
+    command.add_option("SCENE", options.file, "A glTF 2.0 file (.gltf or .glb)")->required();
+    command.add_option("--spp,--samples", options.samples, "Samples a pixel")->capture_default_str();
+    command.add_option("--first-sample", options.firstSample, "Index of the first sample")->capture_default_str();
+    CLI::Option* width = command.add_option("--width", options.width, "Image width in pixels");
+    CLI::Option* height =
+        command.add_option("--height", options.height, "Image height; by default from the width and the camera");
+    command.add_option("--size", options.size, "Both, as WxH")->excludes(width)->excludes(height);
+    command.add_option("--camera", options.camera, "Camera by number or part of its name (default: the first)");
+    command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
+    command.add_option("--max-depth", options.maxDepth,
+                       "Most bounces: 0 emitted light alone, 1 direct light (default: no limit)");
+    command.add_option("--dispatch-ms", options.dispatchMilliseconds, "How long one dispatch should last, about")
+        ->check(finiteNumber())
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
+    addRunOptions(command, options);
     addEnvironmentOptions(command, options.environment);
 }
 

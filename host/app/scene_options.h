@@ -37,6 +37,9 @@ struct SceneOptions {
     bool verbose = false;
 };
 
+/// Adds those that say on which device and how talkatively: the last of the fields, from `device` on.
+void addRunOptions(CLI::App& command, SceneOptions& options);
+
 /// Adds SCENE, --spp, --width, --seed and the others, with `options`' values as defaults.
 void addSceneOptions(CLI::App& command, SceneOptions& options);
 

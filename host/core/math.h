@@ -27,6 +27,9 @@ template <typename Real> [[nodiscard]] Real luminance(const Vec3<Real>& rgb) {
     return Real(0.2126) * rgb.x + Real(0.7152) * rgb.y + Real(0.0722) * rgb.z;
 }
 
+/// The mean of three components.
+template <typename Real> [[nodiscard]] Real channelMean(const Vec3<Real>& v) { return (v.x + v.y + v.z) / Real(3); }
+
 /// The largest of three components.
 template <typename Real> [[nodiscard]] Real maxComponent(const Vec3<Real>& v) {
     return std::max(v.x, std::max(v.y, v.z));

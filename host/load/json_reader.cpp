@@ -58,6 +58,29 @@ std::string escapedKey(std::string_view key) {
     return result;
 }
 
+/// Where the parser stops at a number that double cannot hold: its exception does not say.
+class NumberTooLarge : public nlohmann::json_sax<json> {
+public:
+    std::size_t position = 0;
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override { return true; }
+    bool key(string_t&) override { return true; }
+    bool end_object() override { return true; }
+    bool start_array(std::size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t at, const std::string&, const nlohmann::detail::exception&) override {
+        position = at > 0 ? at - 1 : 0;
+        return false;
+    }
+};
+
 json parseJson(std::string_view text, const LoadContext& context) {
     boundJson(text, context);
     try {
@@ -66,7 +89,10 @@ json parseJson(std::string_view text, const LoadContext& context) {
         const std::size_t position = error.byte > 0 ? error.byte - 1 : 0;
         context.fail("", "it is neither GLB nor valid JSON: error at " + locate(text, std::min(position, text.size())));
     } catch (const json::exception&) {
-        context.fail("", "its JSON holds a number too large to represent");
+        NumberTooLarge handler;
+        json::sax_parse(text.begin(), text.end(), &handler);
+        context.fail("", "its JSON holds a number too large to represent at " +
+                             locate(text, std::min(handler.position, text.size())));
     }
 }
 

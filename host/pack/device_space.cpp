@@ -1,15 +1,50 @@
 #include "pack/device_space.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isolux {
+namespace {
 
-DeviceSpace chooseSpace(const Scene& scene) {
+/// Up to here, in half extents of the scene, rays start at the camera itself.
+constexpr double kNear = 8.0;
+/// Nearer to something than this share of the scene's half extent, the camera sees detail that the scene is large for.
+constexpr double kClose = 1.0 / 64.0;
+
+double distanceTo(const Box3d& box, const Vec3d& point) {
+    return glm::length(glm::max(glm::max(box.lower - point, point - box.upper), Vec3d(0.0)));
+}
+
+Box3d boundsOf(const Scene& scene, const Instance& instance) {
+    Box3d bounds;
+    for (const Vec3f& position : scene.meshes[instance.mesh].positions)
+        bounds.extend(transformPoint(instance.worldFromObject, position));
+    return bounds;
+}
+
+/// From a point to the nearest object, by their bounds.
+double distanceToNearest(const Scene& scene, const Vec3d& point) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Instance& instance : scene.instances)
+        nearest = std::min(nearest, distanceTo(boundsOf(scene, instance), point));
+    for (const Sphere& sphere : scene.spheres)
+        nearest = std::min(nearest, std::max(glm::length(point - sphere.center) - sphere.radius, 0.0));
+    return nearest;
+}
+
+} // namespace
+
+DeviceSpace chooseSpace(const Scene& scene, const RenderSettings& settings) {
     DeviceSpace space;
     const Box3d bounds = worldBounds(scene);
     if (bounds.empty()) return space;
     space.center = bounds.center();
-    const double halfExtent = 0.5 * maxComponent(bounds.extent());
+    if (settings.camera < scene.cameras.size()) {
+        const Vec3d& eye = scene.cameras[settings.camera].position;
+        if (distanceToNearest(scene, eye) < kClose * 0.5 * maxComponent(bounds.extent())) space.center = eye;
+    }
+    const double halfExtent = maxComponent(glm::max(bounds.upper - space.center, space.center - bounds.lower));
     if (halfExtent > 0.0) space.scale = std::exp2(-std::ceil(std::log2(halfExtent)));
     return space;
 }
@@ -30,14 +65,23 @@ std::vector<TriangleCorners> deviceTriangles(const Scene& scene, const Instance&
     return triangles;
 }
 
-std::vector<TriangleCorners> deviceTriangles(const Scene& scene) {
-    const DeviceSpace space = chooseSpace(scene);
+std::vector<TriangleCorners> deviceTriangles(const Scene& scene, const RenderSettings& settings) {
+    const DeviceSpace space = chooseSpace(scene, settings);
     std::vector<TriangleCorners> all;
     for (const Instance& instance : scene.instances) {
         const std::vector<TriangleCorners> triangles = deviceTriangles(scene, instance, space);
         all.insert(all.end(), triangles.begin(), triangles.end());
     }
     return all;
+}
+
+double startDistance(const Scene& scene, const Camera& camera, const DeviceSpace& space) {
+    const Box3d bounds = worldBounds(scene);
+    if (bounds.empty() || glm::length(space.fromWorld(camera.position)) <= kNear) return 0.0;
+    const Vec3d forward = -camera.worldFromCamera[2];
+    // The corner of the bounds that lies least far along the axis.
+    const Vec3d corner = glm::mix(bounds.lower, bounds.upper, glm::lessThan(forward, Vec3d(0.0)));
+    return std::max(glm::dot(corner - camera.position, forward) * space.scale, 0.0);
 }
 
 } // namespace isolux

@@ -35,10 +35,10 @@ public:
     Packer(const Scene& scene, const RenderSettings& settings, const SceneFeatures& features)
         : scene_(scene), settings_(settings), features_(features), materials_(effectiveMaterials(scene)),
           lights_(buildLightTable(scene, settings)) {
-        packed_.space = chooseSpace(scene);
+        packed_.space = chooseSpace(scene, settings);
         const double texel = scene.environment.map ? brightestTexel(*scene.environment.map) : 1.0;
         texelScale_ = scene.environment.map ? unitScale(texel) : 1.0;
-        packed_.radianceScale = unitScale(brightestLight(texel));
+        packed_.radianceScale = unitScale(typicalLight(texel));
     }
 
     PackedScene pack() {
@@ -57,13 +57,23 @@ public:
 
 private:
     /// The largest component that any light record will hold, in the world's radiance.
-    [[nodiscard]] double brightestLight(double environmentTexel) const {
-        double brightest = maxComponent(scene_.environment.radiance) * environmentTexel;
+    /// Between the brightest and the dimmest light, in logarithms: what either sends must stay in range. The brightest
+    /// is at most kHeadroom above, so that its square has room to be summed.
+    [[nodiscard]] double typicalLight(double environmentTexel) const {
+        constexpr double kHeadroom = 0x1p50;
+        double brightest = 0.0;
+        double dimmest = std::numeric_limits<double>::infinity();
+        const auto note = [&](double light) {
+            if (!(light > 0.0)) return;
+            brightest = std::max(brightest, light);
+            dimmest = std::min(dimmest, light);
+        };
+        note(maxComponent(scene_.environment.radiance) * environmentTexel);
         for (const Material& material : materials_)
-            brightest = std::max(brightest, maxComponent(material.unlit ? material.baseColor : material.emission));
+            note(maxComponent(material.unlit ? material.baseColor : material.emission));
         for (const PunctualLight& light : scene_.punctualLights)
-            brightest = std::max(brightest, maxComponent(light.intensity) * intensityUnit(light));
-        return brightest;
+            note(maxComponent(light.intensity) * intensityUnit(light));
+        return brightest == 0.0 ? 0.0 : std::max(brightest / kHeadroom, std::sqrt(brightest) * std::sqrt(dimmest));
     }
 
     /// What a point sends falls off with the square of the distance, which device space measures in its own unit.
@@ -132,7 +142,8 @@ private:
     }
 
     void addNodes(const WideBvh& wide) {
-        packed_.stackBound = wide.stackBound;
+        // A constant of the kernel: in steps of 8, so that scenes share kernels.
+        packed_.stackBound = (wide.stackBound + 7) / 8 * 8;
         packed_.nodes.reserve(wide.nodes.size());
         const auto pack4 = [](const std::array<std::uint8_t, 4>& q) {
             return std::uint32_t{q[0]} | std::uint32_t{q[1]} << 8 | std::uint32_t{q[2]} << 16 |
@@ -289,15 +300,20 @@ PackedScene packScene(const Scene& scene, const RenderSettings& settings, const 
 }
 
 shared::RenderParameters packParameters(const PackedScene& packed, const Scene& scene, const RenderSettings& settings) {
-    const Camera& camera = scene.cameras.at(settings.camera);
+    if (settings.camera >= scene.cameras.size())
+        throwBadInput(scene.name, fmt::format("it has no camera {}", settings.camera));
+    const Camera& camera = scene.cameras[settings.camera];
     const bool orthographic = camera.projection == Projection::orthographic;
     const double halfHeight = orthographic ? camera.ymag * packed.space.scale : std::tan(0.5 * camera.yfov);
     const double aspect = static_cast<double>(settings.width) / static_cast<double>(settings.height);
     shared::RenderParameters parameters{};
-    parameters.cameraPosition = word(Vec3f(packed.space.fromWorld(camera.position)), orthographic ? 1.0f : 0.0f);
+    const Vec3d forward = -camera.worldFromCamera[2];
+    const double start = startDistance(scene, camera, packed.space);
+    parameters.cameraPosition =
+        word(Vec3f(packed.space.fromWorld(camera.position) + forward * start), orthographic ? 1.0f : 0.0f);
     parameters.cameraRight = word(Vec3f(camera.worldFromCamera[0] * (halfHeight * aspect)), 0.0f);
     parameters.cameraUp = word(Vec3f(camera.worldFromCamera[1] * halfHeight), 0.0f);
-    parameters.cameraForward = word(Vec3f(-camera.worldFromCamera[2]), 0.0f);
+    parameters.cameraForward = word(Vec3f(forward), static_cast<float>(start));
     parameters.lensRight = word(Vec3f(camera.worldFromCamera[0]), 0.0f);
     parameters.lensUp = word(Vec3f(camera.worldFromCamera[1]), 0.0f);
     parameters.methods = packMethods(packed.space, settings);

@@ -161,7 +161,7 @@ private:
 
     /// Where the search gives up the kernels ask: that is right everywhere.
     void findCoincidence() {
-        const CoincidentTriangles triangles = findCoincident(deviceTriangles(scene_));
+        const CoincidentTriangles triangles = findCoincident(deviceTriangles(scene_, settings_));
         const auto& [a, b] = triangles.pair;
         note(&SceneFeatures::coincident, triangles.outcome != Coincidence::none,
              triangles.outcome == Coincidence::found  ? fmt::format("triangles {} and {} lie at the same spot", a, b)

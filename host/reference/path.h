@@ -36,8 +36,10 @@ public:
             if (addEmission(path, vertex, bounce) == Fate::ends || bounce == counted_.last) break;
             if (counts(bounce + 1) && vertex.scattersBroadly()) addDirectLight(path, vertex, stream, bounce);
             const PhiloxBlock words = stream.block(2 + 2 * bounce);
+            const Real before = path.carried();
             if (scatter(path, vertex, words) == Fate::ends) break;
-            if (bounce + 1 >= settings_.roulette.start && roulette(path, words[2]) == Fate::ends) break;
+            if (bounce + 1 < settings_.roulette.start) continue;
+            if (roulette(path, survival(path, before), words[2]) == Fate::ends) break;
         }
         return path.result;
     }
@@ -52,6 +54,9 @@ private:
         std::uint32_t medium = kNoMedium;
         Real radianceScale = 1; ///< what refractions have scaled the throughput by
         PathResult<Real> result{};
+
+        /// Without the scaling of radiance at refractions, which a path undoes when it leaves the solid.
+        [[nodiscard]] Real carried() const { return maxComponent(throughput) / radianceScale; }
     };
 
     /// Whether light of so many bounces counts. No path is longer than the last that do.
@@ -155,23 +160,23 @@ private:
         return Fate::goesOn;
     }
 
-    /// The probability with which the path goes on.
-    [[nodiscard]] Real survival(const Path& path) const {
+    /// The probability with which the path goes on, which carried `before` until it was scattered.
+    [[nodiscard]] Real survival(const Path& path, Real before) const {
         switch (settings_.roulette.kind) {
         case Roulette::off: return 1;
         case Roulette::constant: return static_cast<Real>(1.0 - settings_.roulette.termination);
-        case Roulette::throughput: return survivalByThroughput(path);
+        case Roulette::throughput: return survivalByThroughput(path.carried(), path.carried() / before);
         }
         return 1;
     }
 
-    /// Without the scaling of radiance at refractions, which a path undoes when it leaves the solid.
-    [[nodiscard]] static Real survivalByThroughput(const Path& path) {
-        return std::min(maxComponent(path.throughput) / path.radianceScale, static_cast<Real>(kMaxSurvival));
+    /// kMaxSurvival says why. `share`: of what was carried, left by the last bounce.
+    [[nodiscard]] static Real survivalByThroughput(Real carried, Real share) {
+        const Real most = static_cast<Real>(kMaxSurvival);
+        return std::min(carried, share <= static_cast<Real>(kLossless) ? std::max(share, most) : most);
     }
 
-    [[nodiscard]] Fate roulette(Path& path, std::uint32_t word) const {
-        const Real q = survival(path);
+    [[nodiscard]] Fate roulette(Path& path, Real q, std::uint32_t word) const {
         if (unitReal<Real>(word) < q) { // always if q = 1
             path.throughput /= q;
             return Fate::goesOn;

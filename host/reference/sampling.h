@@ -39,7 +39,9 @@ template <typename Real> [[nodiscard]] Vec3<Real> sampleCosineHemisphere(Real u,
     const bool horizontal = std::abs(a) > std::abs(b);
     const Real r = horizontal ? a : b;
     const Real phi = kQuarterPi * (horizontal ? b / a : a / b);
-    const Real z = std::sqrt((1 - std::abs(r)) * (1 + std::abs(r)));
+    // On the rim itself the direction would lie in the surface, and a path in 2^23 would end there.
+    const Real inside = std::min(std::abs(r), Real(1) - Real(0x1p-24));
+    const Real z = std::sqrt((1 - inside) * (1 + inside));
     if (horizontal) return {r * std::cos(phi), r * std::sin(phi), z};
     return {r * std::sin(phi), r * std::cos(phi), z};
 }

@@ -48,6 +48,28 @@ struct Placement {
     }
 };
 
+/// a b - c d to within 1.5 ulp (Kahan; Jeannerod, Louvet and Muller 2013).
+double differenceOfProducts(double a, double b, double c, double d) {
+    const double product = c * d;
+    const double error = std::fma(-c, d, product);
+    return std::fma(a, b, -product) + error;
+}
+
+Vec3d accurateCross(const Vec3d& a, const Vec3d& b) {
+    return {differenceOfProducts(a.y, b.z, a.z, b.y), differenceOfProducts(a.z, b.x, a.x, b.z),
+            differenceOfProducts(a.x, b.y, a.y, b.x)};
+}
+
+/// Twice the area, along the normal. Of the two shorter edges: a sliver's long ones are nearly parallel, and a normal
+/// that is wrong by more than rounding lets rays meet the triangle that they leave.
+Vec3d areaVector(const std::array<Vec3d, 3>& p) {
+    const std::array edges{p[1] - p[0], p[2] - p[1], p[0] - p[2]};
+    std::size_t longest = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if (glm::dot(edges[i], edges[i]) > glm::dot(edges[longest], edges[longest])) longest = i;
+    return accurateCross(edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
+}
+
 template <typename Real>
 void addTriangle(World<Real>& world, const Placement& placement, std::array<std::uint32_t, 3> vertices) {
     if (placement.mirrored) std::swap(vertices[1], vertices[2]);
@@ -63,7 +85,7 @@ void addTriangle(World<Real>& world, const Placement& placement, std::array<std:
         kept[i] = Vec3d(triangle.positions[i]);
         bounds.extend(kept[i]);
     }
-    const Vec3d cross = glm::cross(kept[1] - kept[0], kept[2] - kept[0]);
+    const Vec3d cross = areaVector(kept);
     const double length = glm::length(cross);
     if (length > 0.0 && std::isfinite(length)) {
         triangle.ng = Vec3<Real>(cross / length);

@@ -15,9 +15,6 @@ namespace isolux {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kTrimmedShare = 1000; ///< one pixel in so many is left out of the trimmed mean
-
-double channelMean(const Vec3d& rgb) { return (rgb.x + rgb.y + rgb.z) / 3.0; }
 
 void requireFinite(const ImageView& view, std::uint32_t width) {
     for (std::size_t pixel = 0; pixel < view.pixelCount(); ++pixel) {
@@ -78,12 +75,6 @@ ReferenceQuality qualityOf(const std::vector<ReferencePixel>& pixels, double mse
     quality.relativeBiasError =
         std::sqrt(luminanceVariance / static_cast<double>(pixels.size())) / meanLuminance(pixels);
     return quality;
-}
-
-double trimmedMean(std::vector<double> values) {
-    const std::size_t kept = values.size() - values.size() / kTrimmedShare;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kept) - 1, values.end());
-    return mean(std::span(values).first(kept));
 }
 
 bool isFinite(const Film& film) {

@@ -8,8 +8,6 @@
 namespace isolux {
 namespace {
 
-constexpr std::size_t kTrimmedShare = 1000; ///< one pixel in so many is left out of the trimmed mean
-
 PixelDefects findDefects(const ImageView& image) {
     PixelDefects defects;
     for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
@@ -26,14 +24,6 @@ ColorMean meanColor(const ImageView& image) {
     for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) sum += image.color(pixel);
     const Vec3d rgb = sum / static_cast<double>(image.pixelCount());
     return {rgb, luminance(rgb)};
-}
-
-double channelMean(const Vec3d& rgb) { return (rgb.x + rgb.y + rgb.z) / 3.0; }
-
-double trimmedMean(std::vector<double> values) {
-    const std::size_t kept = values.size() - values.size() / kTrimmedShare;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kept) - 1, values.end());
-    return mean(std::span(values).first(kept));
 }
 
 double meanNoise(const ImageView& image) {

@@ -5,6 +5,7 @@
 namespace isolux {
 namespace {
 
+constexpr std::size_t kTrimmedShare = 1000; ///< one value in so many is left out of the trimmed mean
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -91,6 +92,12 @@ double mean(std::span<const double> values) {
     double sum = 0.0;
     for (const double value : values) sum += value;
     return sum / static_cast<double>(values.size());
+}
+
+double trimmedMean(std::vector<double> values) {
+    const std::size_t kept = values.size() - values.size() / kTrimmedShare;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kept) - 1, values.end());
+    return mean(std::span(values).first(kept));
 }
 
 double variance(std::span<const double> values) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace isolux {
 
@@ -22,6 +23,9 @@ struct Interval {
 
 /// The arithmetic mean; NaN of nothing.
 [[nodiscard]] double mean(std::span<const double> values);
+
+/// The mean without the largest thousandth of the values, which is not empty.
+[[nodiscard]] double trimmedMean(std::vector<double> values);
 
 /// The unbiased variance about the mean, in two passes; NaN of fewer than two values.
 [[nodiscard]] double variance(std::span<const double> values);

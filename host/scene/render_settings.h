@@ -12,9 +12,11 @@ namespace isolux {
 
 inline constexpr std::uint32_t kUnlimitedDepth = std::numeric_limits<std::uint32_t>::max();
 
-/// Roulette by throughput never lets a path live with a higher probability than this, so that every path ends: 1 -
-/// 2^-10.
+/// Roulette by throughput lets no path live with a higher probability than the larger of this, 1 - 2^-10, and the share
+/// of its throughput that the last bounce left: a path that loses less than it is ended for would grow without bound,
+/// and its variance with it. A bounce that leaves more than kLossless loses nothing, so that every path ends.
 inline constexpr double kMaxSurvival = 1.0 - 1.0 / 1024.0;
+inline constexpr double kLossless = 1.0 - 1.0 / 2097152.0;
 
 /// Whether PixelStatistics::pathSignature is filled (README.md, path signature).
 enum class PathSignatures { off, on };

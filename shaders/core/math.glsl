@@ -53,6 +53,13 @@ vec2 concentricDisk(vec2 u, out float radius) {
     return radius * (byX ? sc.yx : sc.xy);
 }
 
+// The height of the hemisphere over a point of the disk. On the rim itself a direction would lie in the surface, and one
+// path in 2^23 would end there.
+float heightOverDisk(float radius) {
+    float inside = min(abs(radius), 1.0 - 1.0 / 16777216.0);
+    return sqrt((1.0 - inside) * (1.0 + inside));
+}
+
 float maxComponent(vec3 v) { return max(v.x, max(v.y, v.z)); }
 
 float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }

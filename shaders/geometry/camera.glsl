@@ -32,12 +32,13 @@ Ray cameraRay(RenderParameters render, uvec2 pixel, uvec4 random) {
     vec3 across = position.x * render.cameraRight.xyz - position.y * render.cameraUp.xyz;
     bool orthographic = render.cameraPosition.w != 0.0;
     vec3 direction = render.cameraForward.xyz + (orthographic ? vec3(0.0) : across);
-    vec3 origin = render.cameraPosition.xyz + (orthographic ? across : vec3(0.0));
+    float start = render.cameraForward.w;
+    vec3 origin = render.cameraPosition.xyz + across * (orthographic ? 1.0 : start);
     if (kThinLens) {
         float radius;
         vec2 disk = concentricDisk(vec2(unitReal(random.z), unitReal(random.w)), radius) * render.methods.x;
         vec3 lens = disk.x * render.lensRight.xyz + disk.y * render.lensUp.xyz;
-        origin += lens;
+        origin += lens * (1.0 - start * render.methods.y);
         direction -= lens * render.methods.y;
     }
     return Ray(origin, orthographic && !kThinLens ? direction : normalize(direction));

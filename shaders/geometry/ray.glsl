@@ -43,10 +43,19 @@ RayTransform transformFor(Ray ray) {
     return result;
 }
 
-// Unit normal and area of a triangle. The cross product is scaled before it is squared, so that small triangles keep
-// their normals; one without any extent has area 0 and the normal `otherwise`.
+// Unit normal and area of a triangle, by its two shorter edges: the long ones of a sliver are nearly parallel. The cross
+// product is scaled before it is squared, so that small triangles keep their normals; one without any extent has area 0 and
+// the normal `otherwise`.
 vec3 triangleNormal(vec3 p0, vec3 p1, vec3 p2, vec3 otherwise, out float area) {
-    vec3 scaledNormal = cross(p1 - p0, p2 - p0);
+    vec3 a = p1 - p0;
+    vec3 b = p2 - p1;
+    vec3 c = p0 - p2;
+    float aa = dot(a, a);
+    float bb = dot(b, b);
+    float cc = dot(c, c);
+    bool longestA = aa >= bb && aa >= cc;
+    bool longestB = !longestA && bb >= cc;
+    vec3 scaledNormal = cross(longestA ? b : longestB ? c : a, longestA ? c : longestB ? a : b);
     float size = max(abs(scaledNormal.x), max(abs(scaledNormal.y), abs(scaledNormal.z)));
     vec3 direction = size > 0.0 ? scaledNormal / size : otherwise;
     float directionLength = length(direction);

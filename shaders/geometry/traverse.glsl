@@ -114,7 +114,7 @@ vec4 childEntries(uvec4 words0, uvec4 lower, uvec4 upper, uvec4 children, RayTra
     precise vec4 z1 = (base.z + bytesOf(upper.y) * scale.z - transform.upperOrigin.z) * inverse.z;
     vec4 entry = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), vec4(0.0)));
     vec4 exit = min(min(max(x0, x1), max(y0, y1)), max(z0, z1)) * 1.0000019;
-    bvec4 hit = bvec4(uvec4(lessThanEqual(entry, exit)) & uvec4(lessThan(entry, vec4(limit))) &
+    bvec4 hit = bvec4(uvec4(lessThanEqual(entry, exit)) & uvec4(lessThanEqual(entry, vec4(limit))) &
                       uvec4(notEqual(children, uvec4(kEmptyChild))));
     return mix(vec4(kFarthest), entry, hit);
 }
@@ -140,6 +140,17 @@ void visitNode(uint node, Query query, RayTransform transform, inout Traversal s
     pushChild(entries.w, children.w, state.stackCount, overflows);
 }
 
+// Where a ray enters the box of a triangle, kFarthest if it misses that: never later than the boxes of the nodes above it, and
+// never where it misses one of those, as their planes lie further out and the arithmetic is the same.
+float entryOf(vec3 p0, vec3 p1, vec3 p2, RayTransform transform) {
+    precise vec3 lower = (min(p0, min(p1, p2)) - transform.lowerOrigin) * transform.inverseDirection;
+    precise vec3 upper = (max(p0, max(p1, p2)) - transform.upperOrigin) * transform.inverseDirection;
+    vec3 near = min(lower, upper);
+    vec3 far = max(lower, upper);
+    float entry = max(maxComponent(near), 0.0);
+    return entry <= min(far.x, min(far.y, far.z)) * 1.0000019 ? entry : kFarthest;
+}
+
 // The nearest hit counts, and of several at one distance that of the lowest id, in whatever order they are met.
 bool comesBefore(float distance, uint id, Traversal state) {
     return distance > 0.0 && (distance < state.distance || (distance == state.distance && id < state.id));
@@ -160,6 +171,9 @@ void testPrimitive(uint index, Query query, RayTransform transform, inout Traver
         TriangleHit hit = intersectTriangle(p0, p1, p2, query.ray, transform);
         distance = hit.distance;
         barycentric = vec3(hit.b0, hit.b1, 1.0 - hit.b0 - hit.b1);
+        // Of a ray in the triangle's plane rounding alone decides where they meet; before the box it would depend on the order
+        // in which boxes are visited.
+        if (comesBefore(distance, idOf(primitive), state)) distance = max(distance, entryOf(p0, p1, p2, transform));
         if (kCoincident) ignored = ignored || liesIn(query.plane, p0, p1, p2);
     }
     bool nearer = !ignored && comesBefore(distance, idOf(primitive), state);
@@ -192,7 +206,7 @@ void traverse(Query query, RayTransform transform, inout Traversal state, inout 
             if (kCutouts) budget -= min(budget, 4u);
             testPrimitive(state.stackCount, query, transform, state);
             if (query.kind == kAnyHit && state.primitive != kNone) state.stackCount = 0u;
-        } else if (stackEntries[state.stackCount] < state.distance) {
+        } else if (stackEntries[state.stackCount] <= state.distance) {
             uint item = stackItems[state.stackCount];
             if ((item & kLeafBit) == 0u) {
                 visitNode(item, query, transform, state, overflows);

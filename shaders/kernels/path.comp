@@ -119,10 +119,15 @@ void addEnvironment() {
     }
 }
 
+// How far a point lies before the camera along its axis.
+float depthOf(vec3 point) {
+    return render.cameraForward.w + dot(point - render.cameraPosition.xyz, render.cameraForward.xyz);
+}
+
 // The sample's part of the AOVs, which are in the buffer alone: a camera ray meets a surface once a sample.
 void recordFirstHit(Surface surface, vec3 albedo) {
     uint lane = gl_GlobalInvocationID.x;
-    float depth = dot(surface.position - render.cameraPosition.xyz, render.cameraForward.xyz);
+    float depth = depthOf(surface.position);
     aovs[lane].albedoDepth += vec4(albedo, depth);
     aovs[lane].normal += vec4(surface.shading, 0.0);
     aovs[lane].primitiveId[path.sampleIndex / 4u][path.sampleIndex % 4u] = surface.id;
@@ -158,7 +163,7 @@ void shadeFirstHit(Surface surface, vec3 albedo) {
     if (kIntegrator == kIntegratorNormals) path.radiance = max(0.5 * surface.shading + 0.5, 0.0);
     if (kIntegrator == kIntegratorAlbedo) path.radiance = albedo;
     if (kIntegrator == kIntegratorDepth)
-        path.radiance = vec3(dot(surface.position - render.cameraPosition.xyz, render.cameraForward.xyz));
+        path.radiance = vec3(depthOf(surface.position));
     if (kIntegrator == kIntegratorAmbient) {
         uvec4 random = randomBlock(2u);
         float cosine;

@@ -15,6 +15,7 @@ layout(constant_id = 32) const bool kAbsorption = true;
 layout(constant_id = 42) const bool kUnlit = true;
 
 const float kMaxSurvival = 1.0 - 1.0 / 1024.0; // host/scene/render_settings.h
+const float kLossless = 1.0 - 1.0 / 2097152.0; // likewise
 const uint kCellBlocks = 0x40000000u;  // of environment maps' cells, beside the blocks of light samples
 const uint kAlphaBlocks = 0x20000000u; // of alpha's keys, beside the blocks of rays
 
@@ -171,11 +172,19 @@ float sampleDirect(ShadingPoint point, uint index) {
     return limit;
 }
 
-// Whether roulette lets the path live; it then stands for those that were ended.
-bool survivesRoulette(uint word) {
+// What the path still carries, without the scaling of radiance at refractions.
+float carriedLight() {
     float carried = maxComponent(path.throughput);
     if (kSolids) carried *= path.radianceScale;
-    float survival = kRoulette == kRouletteConstant ? render.methods.z : min(carried, kMaxSurvival);
+    return carried;
+}
+
+// Whether roulette lets the path live, which carried `before` until it was scattered; it then stands for those that were ended.
+bool survivesRoulette(uint word, float before) {
+    float carried = carriedLight();
+    float share = carried / before;
+    float most = share <= kLossless ? max(share, kMaxSurvival) : kMaxSurvival;
+    float survival = kRoulette == kRouletteConstant ? render.methods.z : min(carried, most);
     bool survives = unitReal(word) < survival;
     if (survives) path.throughput /= survival;
     return survives;
@@ -238,6 +247,7 @@ uint scatter(Surface surface, Bsdf bsdf) {
     uvec4 random = randomBlock(2u + 2u * path.depth);
     vec2 u = vec2(unitReal(random.x), unitReal(random.y));
     uint outcome = 0u;
+    float before = carriedLight();
     bool leaves;
     if (isLambertian(bsdf)) {
         leaves = scatterDiffusely(surface, bsdf.diffuse, u);
@@ -248,7 +258,7 @@ uint scatter(Surface surface, Bsdf bsdf) {
     uint ending = kGoesOn;
     if (!leaves || maxComponent(path.throughput) <= 0.0) {
         ending = kEnds;
-    } else if (kRoulette != kRouletteOff && path.depth >= render.depthLights.y && !survivesRoulette(random.z)) {
+    } else if (kRoulette != kRouletteOff && path.depth >= render.depthLights.y && !survivesRoulette(random.z, before)) {
         ending = kEndsByRoulette;
     }
     return ending | outcome;

@@ -258,7 +258,7 @@ BsdfSample sampleBsdf(Bsdf bsdf, vec3 wo, float choice, vec2 u) {
     } else {
         float radius;
         vec2 disk = concentricDisk(u, radius);
-        result.wi = vec3(disk, sqrt((1.0 - abs(radius)) * (1.0 + abs(radius))));
+        result.wi = vec3(disk, heightOverDisk(radius));
         result.lobe = kLobeDiffuse;
         result.delta = false;
         result.weight = vec3(0.0);

@@ -18,7 +18,7 @@ float lambertianPdf(float cosine) { return cosine * kInvPi; }
 vec3 lambertianSample(vec3 shading, vec2 u, out float cosine) {
     float radius;
     vec2 disk = concentricDisk(u, radius);
-    cosine = sqrt((1.0 - abs(radius)) * (1.0 + abs(radius)));
+    cosine = heightOverDisk(radius);
     vec3 tangent, bitangent;
     frameAbout(shading, tangent, bitangent);
     return disk.x * tangent + disk.y * bitangent + cosine * shading;

@@ -58,10 +58,10 @@ ISOLUX_CHECK_SIZE(SampleRecord, 256);
 
 // Constant over a render.
 struct RenderParameters {
-    vec4 cameraPosition; // device space; w: 1 for an orthographic camera, else 0
+    vec4 cameraPosition; // device space: where the axis meets the plane that rays start on; w: 1 for an orthographic camera, else 0
     vec4 cameraRight;    // to the image's right edge: for a perspective camera at unit distance
     vec4 cameraUp;       // to its top edge
-    vec4 cameraForward;  // unit
+    vec4 cameraForward;  // unit; w: how far that plane lies before the camera
     vec4 lensRight;      // unit, as cameraRight and cameraUp are not
     vec4 lensUp;
     vec4 environment;       // radiance; w: pdf of light sampling in its directions, 0 if that never chooses it

@@ -3,83 +3,23 @@
 
 #include "load/gltf.h"
 #include "pack/packed_scene.h"
+#include "render/ray_query.h"
 
-#include "kernels/spirv.h"
 #include "shared/interface.h"
-#include "shared/ray_records.h"
 
 #include <bit>
-#include <cstring>
 #include <random>
 
 namespace isolux::test {
 namespace {
-
-constexpr std::uint32_t kWorkgroupSize = 64;
-constexpr std::uint32_t kRaysPerDispatch = 1u << 16;
-constexpr double kTestsPerDispatch = 1e7; // primitive tests, so that a dispatch stays short
-
-enum class Method { bvh, bruteForce };
 
 using Rays = std::vector<shared::RayRecord>;
 using Hits = std::vector<shared::HitRecord>;
 
 class Intersection : public DeviceTest {
 protected:
-    Hits trace(const PackedScene& scene, const Rays& rays, Method method, ReadPath path = ReadPath::automatic) {
-        CommandRunner runner(device_);
-        const DeviceScene deviceScene(device_, runner, scene, path);
-        const Kernel kernel = makeKernel(deviceScene, scene.stackBound, method);
-        Hits hits;
-        for (std::size_t first = 0; first < rays.size(); first += kRaysPerDispatch) {
-            const std::size_t count = std::min<std::size_t>(kRaysPerDispatch, rays.size() - first);
-            const Hits chunk = traceChunk(runner, kernel, scene, std::span(rays).subspan(first, count), method);
-            hits.insert(hits.end(), chunk.begin(), chunk.end());
-        }
-        return hits;
-    }
-
-private:
-    Kernel makeKernel(const DeviceScene& scene, std::uint32_t stackSize, Method method) const {
-        KernelSource source;
-        source.spirv = kernels::intersect;
-        source.pushConstantSize = sizeof(shared::IntersectParameters);
-        source.specialization = {{shared::kSpecWorkgroupSize, kWorkgroupSize},
-                                 {shared::kSpecTexelBuffers, scene.usesTexelBuffers() ? 1u : 0u},
-                                 {shared::kSpecStackSize, stackSize},
-                                 {shared::kSpecBruteForce, method == Method::bruteForce ? 1u : 0u}};
-        Kernel kernel(device_, source);
-        scene.bindTo(kernel);
-        return kernel;
-    }
-
-    Hits traceChunk(CommandRunner& runner, const Kernel& kernel, const PackedScene& scene,
-                    std::span<const shared::RayRecord> rays, Method method) const {
-        constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-        const Buffer rayBuffer(device_, rays.size_bytes(), kStorage, BufferAccess::hostWrites);
-        const Buffer hitBuffer(device_, rays.size() * sizeof(shared::HitRecord), kStorage, BufferAccess::hostReads);
-        std::memcpy(rayBuffer.mapped().data(), rays.data(), rays.size_bytes());
-        rayBuffer.flush();
-        Kernel& bound = const_cast<Kernel&>(kernel); // NOLINT: binding changes no state that callers see
-        bound.bind(shared::kBindRays, rayBuffer);
-        bound.bind(shared::kBindHits, hitBuffer);
-        const auto primitives = static_cast<std::uint32_t>(scene.primitives.size());
-        const auto rayCount = static_cast<std::uint32_t>(rays.size());
-        // Some drivers end loops after 65,535 iterations over the lanes of a subgroup: chunks stay far below.
-        const auto step = static_cast<std::uint32_t>(std::clamp(kTestsPerDispatch / rayCount, 1.0, 4000.0));
-        for (std::uint32_t begin = 0; begin < primitives; begin += step) {
-            const shared::IntersectParameters parameters{
-                {0, rayCount, begin, method == Method::bruteForce ? std::min(begin + step, primitives) : primitives}};
-            runner.run([&](VkCommandBuffer commands) {
-                bound.record(commands, std::as_bytes(std::span(&parameters, 1)),
-                             (rayCount + kWorkgroupSize - 1) / kWorkgroupSize);
-            });
-            if (method == Method::bvh) break;
-        }
-        hitBuffer.invalidate();
-        Hits hits(rays.size());
-        std::memcpy(hits.data(), hitBuffer.mapped().data(), hits.size() * sizeof(shared::HitRecord));
-        return hits;
+    Hits trace(const PackedScene& scene, const Rays& rays, RayMethod method, ReadPath path = ReadPath::automatic) {
+        return RayQuery(device_, scene, method, path).trace(rays);
     }
 };
 
@@ -176,7 +116,7 @@ protected:
         const auto count = static_cast<std::size_t>(std::max(100.0, rayCount * workShare()));
         const Rays rays = RayMaker(scene).make(count);
         const Disagreement result =
-            disagreement(trace(scene, rays, Method::bvh), trace(scene, rays, Method::bruteForce));
+            disagreement(trace(scene, rays, RayMethod::bvh), trace(scene, rays, RayMethod::bruteForce));
         EXPECT_EQ(result.count, 0u) << file << ": of " << count << " rays, " << result.hits << " hits";
         EXPECT_EQ(result.unfinished, 0u) << file;
         EXPECT_GT(result.hits, count / 20) << file;
@@ -202,8 +142,8 @@ TEST_F(BvhAgainstBruteForce, SeedScenes) {
 TEST_F(Intersection, StorageBuffersFindTheSame) {
     const PackedScene scene = packScene(loadScene(projectScene("cornell_spheres")));
     const Rays rays = RayMaker(scene).make(20'000);
-    const Hits texels = trace(scene, rays, Method::bvh, ReadPath::texelBuffers);
-    EXPECT_EQ(disagreement(texels, trace(scene, rays, Method::bvh, ReadPath::storageBuffers)).count, 0u);
+    const Hits texels = trace(scene, rays, RayMethod::bvh, ReadPath::texelBuffers);
+    EXPECT_EQ(disagreement(texels, trace(scene, rays, RayMethod::bvh, ReadPath::storageBuffers)).count, 0u);
 }
 
 /// From inside the blob's closed room every ray must hit something, also those aimed at edges and vertices.
@@ -217,7 +157,7 @@ TEST_F(Intersection, ClosedMeshesAreWatertight) {
         rays.push_back(maker.towards(origin, i % 2 == 0 ? maker.vertex() : maker.edgePoint()));
     }
     std::size_t escaped = 0;
-    for (const shared::HitRecord& hit : trace(scene, rays, Method::bvh))
+    for (const shared::HitRecord& hit : trace(scene, rays, RayMethod::bvh))
         if (hit.primitive.x == shared::kNone) ++escaped;
     EXPECT_EQ(escaped, 0u);
 }

@@ -23,6 +23,7 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"render", {"core", "scene", "pack", "gpu", "film", "shared", "kernels"}},
     {"reference", {"core", "scene", "accel", "film"}},
     {"report", {"core", "film"}},
+    {"stress", {"core", "scene", "load", "pack", "gpu", "film", "render", "reference", "report", "shared"}},
 };
 
 /// The quoted includes of a source file.

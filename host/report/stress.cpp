@@ -1,0 +1,155 @@
+#include "report/stress.h"
+
+#include "core/error.h"
+#include "report/format.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace isolux {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// A step without a figure is as good as its faults say.
+bool holds(const StressFigures& figures) {
+    if (!figures.failure.empty() || !figures.faults.clean()) return false;
+    const StressVerdict verdict = verdictOf(figures.deviation(), kStressTolerance);
+    return verdict == StressVerdict::within || verdict == StressVerdict::none;
+}
+
+StressFamily* familyNamed(StressRun& run, const std::string& name) {
+    const auto found = std::ranges::find(run.families, name, &StressFamily::name);
+    return found == run.families.end() ? nullptr : &*found;
+}
+
+StressSweep* sweepNamed(StressFamily& family, const std::string& name) {
+    const auto found = std::ranges::find(family.sweeps, name, &StressSweep::name);
+    return found == family.sweeps.end() ? nullptr : &*found;
+}
+
+Interval intervalOf(const ordered_json& json) {
+    const auto number = [](const ordered_json& value) {
+        return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+    };
+    return {number(json.at(0)), number(json.at(1)), number(json.at(2))};
+}
+
+StressFigures figuresOf(const ordered_json& json) {
+    StressFigures figures;
+    figures.renderer = json.at("renderer").get<std::string>();
+    figures.bias = intervalOf(json.at("bias"));
+    figures.error = intervalOf(json.at("error"));
+    figures.faults.tried = json.at("tried").get<std::uint64_t>();
+    figures.faults.nonFinite = json.at("nonFinite").get<std::uint64_t>();
+    figures.failure = json.value("failure", std::string());
+    figures.seconds = json.at("seconds").get<double>();
+    return figures;
+}
+
+void addToSweep(StressSweep& sweep, const ordered_json& steps) {
+    for (const ordered_json& step : steps) {
+        const auto found = std::ranges::find(sweep.steps, step.at("label").get<std::string>(), &StressStep::label);
+        if (found == sweep.steps.end()) continue;
+        for (const ordered_json& figures : step.at("figures")) found->figures.push_back(figuresOf(figures));
+    }
+}
+
+} // namespace
+
+const Interval& StressFigures::deviation() const { return std::isnan(bias.estimate) ? error : bias; }
+
+const StressFigures* StressStep::of(const std::string& renderer) const {
+    const auto found = std::ranges::find(figures, renderer, &StressFigures::renderer);
+    return found == figures.end() ? nullptr : &*found;
+}
+
+StressVerdict verdictOf(const Interval& deviation, double tolerance) {
+    if (std::isnan(deviation.estimate)) return StressVerdict::none;
+    const double low = deviation.known() ? deviation.low : deviation.estimate;
+    const double high = deviation.known() ? deviation.high : deviation.estimate;
+    if (low >= -tolerance && high <= tolerance) return StressVerdict::within;
+    return low > tolerance || high < -tolerance ? StressVerdict::beyond : StressVerdict::unknown;
+}
+
+StressRange rangeOf(const StressSweep& sweep, const std::string& renderer) {
+    StressRange best;
+    StressRange current;
+    std::size_t steps = 0;
+    std::optional<std::string> breakdown;
+    for (const StressStep& step : sweep.steps) {
+        const StressFigures* figures = step.of(renderer);
+        if (figures == nullptr) continue;
+        ++steps;
+        const bool broken = verdictOf(figures->deviation(), kStressBreakdown) == StressVerdict::beyond;
+        if (!breakdown && (broken || !figures->failure.empty())) breakdown = step.label;
+        if (!holds(*figures)) {
+            current = {};
+            continue;
+        }
+        if (current.within++ == 0) current.first = step.label;
+        current.last = step.label;
+        if (current.within > best.within) best = current;
+    }
+    best.steps = steps;
+    best.breakdown = breakdown;
+    return best;
+}
+
+StressFaults totalFaults(const StressFamily& family, const std::string& renderer) {
+    StressFaults total;
+    for (const StressSweep& sweep : family.sweeps)
+        for (const StressStep& step : sweep.steps) {
+            const StressFigures* figures = step.of(renderer);
+            if (figures == nullptr) continue;
+            const StressFaults& faults = figures->faults;
+            total.tried += faults.tried;
+            total.nonFinite += faults.nonFinite;
+            total.negative += faults.negative;
+            total.selfHits += faults.selfHits;
+            total.leaks += faults.leaks;
+            total.stackOverflows += faults.stackOverflows;
+            total.invalidIndices += faults.invalidIndices;
+            total.differentBits += faults.differentBits;
+        }
+    return total;
+}
+
+std::vector<std::string> brokenPromises(const std::vector<StressFamily>& families) {
+    std::vector<std::string> broken;
+    for (const StressFamily& family : families)
+        for (const StressSweep& sweep : family.sweeps)
+            for (const StressStep& step : sweep.steps) {
+                const StressFigures* figures = step.of(kStressDevice);
+                if (figures == nullptr) continue;
+                const std::string place = fmt::format("{}, {}, {}", family.name, sweep.name, step.label);
+                if (!figures->failure.empty()) broken.push_back(fmt::format("{}: {}", place, figures->failure));
+                const bool promised = sweep.promisedFrom <= step.parameter && step.parameter <= sweep.promisedTo;
+                if (!(promised ? figures->faults.clean() : figures->faults.sound()))
+                    broken.push_back(fmt::format("{}: {}", place, formatFaults(figures->faults)));
+                if (promised && verdictOf(figures->deviation(), kStressTolerance) == StressVerdict::beyond)
+                    broken.push_back(fmt::format("{}: {}", place, formatPercentInterval(figures->deviation())));
+            }
+    return broken;
+}
+
+void addFigures(StressRun& run, const ordered_json& document, const std::string& file) {
+    try {
+        for (const ordered_json& family : document.at("families")) {
+            StressFamily* ours = familyNamed(run, family.at("name").get<std::string>());
+            if (ours == nullptr) continue;
+            for (const ordered_json& sweep : family.at("sweeps"))
+                if (StressSweep* into = sweepNamed(*ours, sweep.at("name").get<std::string>()))
+                    addToSweep(*into, sweep.at("steps"));
+        }
+    } catch (const nlohmann::json::exception& error) {
+        throwBadInput(file, fmt::format("it is no report of stress tests ({})", error.what()));
+    }
+}
+
+} // namespace isolux

@@ -1,0 +1,213 @@
+"""Steps of `isolux stress` with Mitsuba 3 in single precision: run by the Python that has it.
+
+    stress_mitsuba.py FOLDER OUTPUT.json
+
+FOLDER holds what `isolux stress --export` writes. What a scene needs and Mitsuba has not, or means differently, is left out.
+"""
+
+import json
+import math
+import pathlib
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import mitsuba as mi
+import numpy as np
+
+mi.set_variant("scalar_rgb")
+
+from peers_mitsuba import colour
+from peers_scene import turned_about
+
+SEEDS = 8
+STUDENT_7 = 2.3646  # the 97.5 % quantile of seven degrees of freedom
+NORMAL = 1.9600
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+LARGEST_ALPHA = 0.1  # beyond, light reflected more than once by a metal's facets, which Mitsuba leaves out, is seen
+
+
+class Inexpressible(Exception):
+    """Mitsuba lacks something, or means something else by it."""
+
+
+def number(value):
+    return math.inf if value is None else value
+
+
+def glass(material, alpha):
+    if material["thickness"] == 0 or material["baseColor"] != [1, 1, 1]:
+        raise Inexpressible("thin or tinted glass")
+    if math.isfinite(number(material["attenuationDistance"])):
+        raise Inexpressible("absorption")
+    indices = {"int_ior": material["ior"], "ext_ior": 1.0}
+    if alpha < 1e-5:
+        return {"type": "dielectric", **indices}
+    if alpha > LARGEST_ALPHA:
+        raise Inexpressible("rough glass")
+    return {"type": "roughdielectric", "distribution": "ggx", "alpha": alpha, **indices}
+
+
+def metal(material, alpha):
+    if material["baseColor"] != [1, 1, 1] or alpha > LARGEST_ALPHA:
+        raise Inexpressible("coloured or very rough metal")
+    if alpha < 1e-5:
+        return {"type": "conductor", "material": "none"}
+    return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": alpha}
+
+
+def bsdf(material):
+    alpha = material["roughness"] ** 2
+    if material["unlit"] or not material["opaque"]:
+        raise Inexpressible("unlit or see-through surfaces")
+    if material["transmission"] == 1:
+        return glass(material, alpha)
+    if material["metallic"] == 1:
+        return {"type": "twosided", "nested": metal(material, alpha)}
+    if material["transmission"] or material["metallic"] or material["specular"]:
+        raise Inexpressible("mixed surfaces")
+    return {"type": "twosided", "nested": {"type": "diffuse", "reflectance": colour(material["baseColor"])}}
+
+
+def properties(material):
+    found = {"bsdf": bsdf(material)}
+    if any(material["emission"]):
+        if material["doubleSided"]:
+            raise Inexpressible("lamps that shine from both sides")
+        found["emitter"] = {"type": "area", "radiance": colour(material["emission"])}
+    return found
+
+
+def mesh(body, materials, name):
+    """Vertices in the world, rounded once: the best that single precision can hold."""
+    matrix = np.array(body["worldFromObject"]).reshape(4, 4)
+    local = np.array(body["positions"]).reshape(-1, 3)
+    world = (local @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
+    faces = np.array(body["triangles"], dtype=np.uint32).reshape(-1, 3)
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        faces = faces[:, ::-1]
+    props = mi.Properties()
+    for key, value in properties(materials[body["material"]]).items():
+        props[key] = mi.load_dict(value)
+    smooth = bool(body["normals"])
+    if not smooth:
+        props["face_normals"] = True
+    made = mi.Mesh(name, len(world), len(faces), has_vertex_normals=smooth, props=props)
+    params = mi.traverse(made)
+    params["vertex_positions"], params["faces"] = world.ravel(), faces.ravel()
+    if smooth:
+        normals = np.array(body["normals"]).reshape(-1, 3) @ np.linalg.inv(matrix[:3, :3])
+        params["vertex_normals"] = (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype(np.float32).ravel()
+    params.update()
+    return made
+
+
+def light(entry):
+    if entry["kind"] == "point":
+        return {"type": "point", "position": entry["position"], "intensity": colour(entry["intensity"])}
+    if entry["kind"] == "directional":
+        return {"type": "directional", "direction": entry["direction"], "irradiance": colour(entry["intensity"])}
+    raise Inexpressible("spots")
+
+
+def sensor(scene):
+    """Its planes before and behind whatever there is: both renderers are to see it all."""
+    camera, matrix = scene["camera"], np.array(scene["camera"]["worldFromCamera"]).reshape(4, 4)
+    film = {"type": "hdrfilm", "width": scene["width"], "height": scene["height"], "pixel_format": "rgb",
+            "component_format": "float32", "rfilter": {"type": "box"}}
+    if scene["aperture"]:
+        raise Inexpressible("thin lenses")
+    eye = matrix[:3, 3]
+    farthest = max([np.linalg.norm(point - eye) for point in corners(scene)], default=1.0) or 1.0
+    common = {"near_clip": 1e-5 * farthest, "far_clip": 10 * farthest, "film": film, "sampler": {"type": "independent"}}
+    turned = np.array(turned_about(matrix.tolist()))
+    if not camera["orthographic"]:
+        return {"type": "perspective", "fov": math.degrees(camera["yfov"]), "fov_axis": "y",
+                "to_world": mi.ScalarTransform4f(turned), **common}
+    if scene["width"] != scene["height"]:
+        raise Inexpressible("orthographic images that are not square")
+    turned[:3, :2] *= camera["ymag"]
+    return {"type": "orthographic", "to_world": mi.ScalarTransform4f(turned), **common}
+
+
+def corners(scene):
+    for body in scene["meshes"]:
+        matrix = np.array(body["worldFromObject"]).reshape(4, 4)
+        world = np.array(body["positions"]).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+        yield from (world.min(axis=0), world.max(axis=0))
+    for sphere in scene["spheres"]:
+        yield np.array(sphere["center"]) + sphere["radius"]
+        yield np.array(sphere["center"]) - sphere["radius"]
+
+
+def load(scene):
+    depth = -1 if scene["maxDepth"] is None else scene["maxDepth"] + 1
+    made = {"type": "scene", "integrator": {"type": "path", "max_depth": depth}, "sensor": sensor(scene)}
+    for number_, body in enumerate(scene["meshes"]):
+        made[f"mesh {number_}"] = mesh(body, scene["materials"], f"mesh {number_}")
+    for number_, body in enumerate(scene["spheres"]):
+        made[f"sphere {number_}"] = {"type": "sphere", "center": body["center"], "radius": body["radius"],
+                                     **properties(scene["materials"][body["material"]])}
+    for number_, entry in enumerate(scene["lights"]):
+        made[f"light {number_}"] = light(entry)
+    if any(scene["environment"]):
+        made["environment"] = {"type": "constant", "radiance": colour(scene["environment"])}
+    return mi.load_dict(made)
+
+
+def deviation(means, truth):
+    """Relative, with its 95 % interval: the spread of the seeds and what is known of the truth."""
+    low, expected, high = truth
+    known = (high - low) / (2 * NORMAL) if low is not None and high is not None else 0.0
+    error = math.sqrt(np.var(means, ddof=1) / len(means) + known ** 2)
+    estimate = np.mean(means) / expected - 1
+    half = STUDENT_7 * error / abs(expected)
+    return [float(estimate - half), float(estimate), float(estimate + half)]
+
+
+def figures(scene, name):
+    result = {"renderer": name, "bias": [None] * 3, "error": [None] * 3, "tried": 0, "nonFinite": 0}
+    begin = time.perf_counter()
+    try:
+        loaded = load(scene)
+        spp = max(1, scene["samples"] // SEEDS)
+        images = [np.array(mi.render(loaded, spp=spp, seed=seed), dtype=np.float64)[..., :3] @ LUMINANCE
+                  for seed in range(SEEDS)]
+        result["tried"] = SEEDS * spp * scene["width"] * scene["height"]
+        result["nonFinite"] = int(sum(np.count_nonzero(~np.isfinite(image)) for image in images))
+        if result["nonFinite"]:
+            result["failure"] = f"{result['nonFinite']} pixels NaN or infinite"
+        elif scene["truth"][1]:
+            result["error"] = deviation([image.mean() for image in images], scene["truth"])
+    except RuntimeError as error:
+        result["failure"] = "Mitsuba: " + next(filter(None, map(str.strip, str(error).splitlines()[::-1])), "an error")[:120]
+    result["seconds"] = time.perf_counter() - begin
+    return result
+
+
+def main():
+    folder, output = map(pathlib.Path, sys.argv[1:])
+    families = {}
+    left_out = {}
+    files = sorted(folder.glob("*.json"))
+    for done, file in enumerate(files):
+        scene = json.loads(file.read_text())
+        print(f"\r{done} of {len(files)} steps", end="", file=sys.stderr, flush=True)
+        try:
+            found = figures(scene, f"Mitsuba {mi.__version__} scalar_rgb")
+        except Inexpressible as reason:
+            left_out[f"{scene['family']}, {scene['sweep']}"] = str(reason)
+            continue
+        steps = families.setdefault(scene["family"], {}).setdefault(scene["sweep"], [])
+        steps.append({"label": scene["label"], "figures": [found]})
+    print(file=sys.stderr)
+    for place, reason in left_out.items():
+        print(f"left out: {place}: {reason}", file=sys.stderr)
+    document = {"families": [{"name": name, "sweeps": [{"name": sweep, "steps": steps} for sweep, steps in sweeps.items()]}
+                             for name, sweeps in families.items()]}
+    output.write_text(json.dumps(document))
+
+
+if __name__ == "__main__":
+    main()
