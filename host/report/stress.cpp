@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace isolux {
@@ -21,6 +22,30 @@ bool holds(const StressFigures& figures) {
     if (!figures.failure.empty() || !figures.faults.clean()) return false;
     const StressVerdict verdict = verdictOf(figures.deviation(), kStressTolerance);
     return verdict == StressVerdict::within || verdict == StressVerdict::none;
+}
+
+/// A step as a range sees it.
+struct Tried {
+    const std::string* label = nullptr;
+    bool counts = false;
+    bool broken = false;
+};
+
+Tried judged(const StressStep& step, const StressFigures& figures, StressCriterion criterion) {
+    const bool beyond = verdictOf(figures.deviation(), kStressBreakdown) == StressVerdict::beyond;
+    const bool broken = beyond || !figures.failure.empty();
+    return {&step.label, criterion == StressCriterion::holds ? holds(figures) : !broken, broken};
+}
+
+/// First and one past the last; both 0 without any.
+std::pair<std::size_t, std::size_t> longestRun(const std::vector<Tried>& tried) {
+    std::pair<std::size_t, std::size_t> best{0, 0};
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+        if (!tried[i].counts) begin = i + 1;
+        if (i + 1 - begin > best.second - best.first) best = {begin, i + 1};
+    }
+    return best;
 }
 
 StressFamily* familyNamed(StressRun& run, const std::string& name) {
@@ -77,28 +102,25 @@ StressVerdict verdictOf(const Interval& deviation, double tolerance) {
     return low > tolerance || high < -tolerance ? StressVerdict::beyond : StressVerdict::unknown;
 }
 
-StressRange rangeOf(const StressSweep& sweep, const std::string& renderer) {
-    StressRange best;
-    StressRange current;
-    std::size_t steps = 0;
-    std::optional<std::string> breakdown;
-    for (const StressStep& step : sweep.steps) {
-        const StressFigures* figures = step.of(renderer);
-        if (figures == nullptr) continue;
-        ++steps;
-        const bool broken = verdictOf(figures->deviation(), kStressBreakdown) == StressVerdict::beyond;
-        if (!breakdown && (broken || !figures->failure.empty())) breakdown = step.label;
-        if (!holds(*figures)) {
-            current = {};
-            continue;
-        }
-        if (current.within++ == 0) current.first = step.label;
-        current.last = step.label;
-        if (current.within > best.within) best = current;
+StressRange rangeOf(const StressSweep& sweep, const std::string& renderer, StressCriterion criterion) {
+    std::vector<Tried> tried;
+    for (const StressStep& step : sweep.steps)
+        if (const StressFigures* figures = step.of(renderer)) tried.push_back(judged(step, *figures, criterion));
+    const auto [begin, end] = longestRun(tried);
+    StressRange range;
+    range.steps = tried.size();
+    range.within = end - begin;
+    if (begin < end) {
+        range.first = *tried[begin].label;
+        range.last = *tried[end - 1].label;
     }
-    best.steps = steps;
-    best.breakdown = breakdown;
-    return best;
+    const auto isBroken = [](const Tried& step) { return step.broken; };
+    const auto start = tried.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto before = std::find_if(std::reverse_iterator(start), tried.rend(), isBroken);
+    const auto after = std::find_if(tried.begin() + static_cast<std::ptrdiff_t>(end), tried.end(), isBroken);
+    if (before != tried.rend()) range.broken.push_back(*before->label);
+    if (after != tried.end()) range.broken.push_back(*after->label);
+    return range;
 }
 
 StressFaults totalFaults(const StressFamily& family, const std::string& renderer) {

@@ -91,17 +91,24 @@ enum class StressVerdict {
 };
 [[nodiscard]] StressVerdict verdictOf(const Interval& deviation, double tolerance);
 
-/// How far a renderer gets in a sweep.
+/// What a step needs to count for a range.
+enum class StressCriterion {
+    holds,        ///< the deviation is within kStressTolerance, and nothing is counted that should not happen
+    notBrokenDown ///< the deviation is not beyond kStressBreakdown: for renderers that share no random numbers with the
+                  ///< truth
+};
+
+/// How far a renderer gets in a sweep: the longest run of steps that meet the criterion.
 struct StressRange {
-    std::string
-        first; ///< labels of the steps between which every deviation is within the tolerance: the longest such run
+    std::string first; ///< label; empty without any
     std::string last;
     std::size_t within = 0; ///< steps in it
-    std::size_t steps = 0;  ///< steps with a figure
-    std::optional<std::string>
-        breakdown; ///< the first step, in the sweep's order, that is wholly beyond kStressBreakdown
+    std::size_t steps = 0;  ///< steps that the renderer tried
+    /// The nearest before and after it, or the first of all without any, that failed or are beyond kStressBreakdown.
+    std::vector<std::string> broken;
 };
-[[nodiscard]] StressRange rangeOf(const StressSweep& sweep, const std::string& renderer);
+[[nodiscard]] StressRange rangeOf(const StressSweep& sweep, const std::string& renderer,
+                                  StressCriterion criterion = StressCriterion::holds);
 
 [[nodiscard]] StressFaults totalFaults(const StressFamily& family, const std::string& renderer);
 

@@ -3,6 +3,7 @@
 #include "report/stress.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -85,7 +86,7 @@ std::string rangeText(const StressSweep& sweep, const std::string& renderer) {
     if (range.steps == 0) return "";
     std::string text = range.within == 0 ? "at none" : fmt::format("from {} to {}", range.first, range.last);
     text += fmt::format(" ({} of {} steps)", range.within, range.steps);
-    if (range.breakdown) text += fmt::format(", beyond 1 % at {}", *range.breakdown);
+    if (!range.broken.empty()) text += fmt::format(", beyond 1 % at {}", fmt::join(range.broken, " and "));
     return fmt::format("  {:<17} {}\n", renderer, text);
 }
 
@@ -119,9 +120,11 @@ ordered_json toJson(const StressFigures& figures) {
 }
 
 ordered_json toJson(const StressRange& range) {
-    ordered_json json{{"first", range.first}, {"last", range.last}, {"within", range.within}, {"steps", range.steps}};
-    json["breakdown"] = range.breakdown ? ordered_json(*range.breakdown) : ordered_json();
-    return json;
+    return {{"first", range.first},
+            {"last", range.last},
+            {"within", range.within},
+            {"steps", range.steps},
+            {"broken", range.broken}};
 }
 
 ordered_json toJson(const StressSweep& sweep) {

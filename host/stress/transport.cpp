@@ -237,12 +237,14 @@ std::vector<PlannedSweep> rouletteSweeps(Extent extent) {
 }
 
 PlannedSweep pinholeSweep(Extent extent) {
-    const StressSweep about{.name = "pinhole",
-                            .title = "A floor lit through a hole in a wall",
-                            .axisTitle = "the hole's size over the wall's",
-                            .limit = "From every point of the floor the hole's edges lie off by some u/2 of their "
-                                     "distance, u = 2^-24, to either side: rounding decides about a share u/size of "
-                                     "the light, 6 % at 1e-6, but not more often one way than the other."};
+    const StressSweep about{
+        .name = "pinhole",
+        .title = "A floor lit through a hole in a wall",
+        .axisTitle = "the hole's size over the wall's",
+        .limit = "From every point of the floor the hole's edges lie off by some u/2 of their "
+                 "distance, u = 2^-24, to either side: rounding decides about a share u/size of "
+                 "the light, 6 % at 1e-6, of which not all cancels: measured is 0.9 %, and 0.1 % at 1e-5.",
+        .promisedFrom = 1e-5};
     if (extent == Extent::quick) return {about, stepsBy({-1, -5, -2}, pinhole)};
     return {about, stepsBy({-1, -6, -1}, pinhole)};
 }

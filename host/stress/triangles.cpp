@@ -131,7 +131,7 @@ PlannedSweep askewSliverSweep(Extent extent) {
                                      "by some u A/2: 3 mrad at 1e5, of either sign, so that the mean over slivers "
                                      "holds somewhat longer. At 1/u = "
                                      "1.7e7 the width itself is rounded away.",
-                            .promisedTo = 1e5};
+                            .promisedTo = 1e4};
     return {about, extent == Extent::quick ? stepsBy({0, 5, 2}, trialAt) : stepsBy({0, 8}, trialAt)};
 }
 

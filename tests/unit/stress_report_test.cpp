@@ -63,7 +63,7 @@ TEST(StressRange, IsTheLongestRunOfStepsThatHold) {
     EXPECT_EQ(range.last, "1e2");
     EXPECT_EQ(range.within, 3u);
     EXPECT_EQ(range.steps, 7u);
-    EXPECT_EQ(range.breakdown, "1e3");
+    EXPECT_EQ(range.broken, std::vector<std::string>{"1e3"});
     EXPECT_EQ(rangeOf(sweepOfSeven(), kStressSingle).steps, 0u);
 }
 
@@ -74,7 +74,14 @@ TEST(StressRange, FaultsAndFailuresEndIt) {
     sweep.steps[0].figures[0].failure = "refused";
     const StressRange range = rangeOf(sweep, kStressDevice);
     EXPECT_EQ(range.within, 1u);
-    EXPECT_EQ(range.breakdown, "1e-3");
+    EXPECT_EQ(range.broken, (std::vector<std::string>{"1e-3", "1e3"}));
+}
+
+TEST(StressRange, OfOthersEndsWhereTheyBreakDown) {
+    const StressRange range = rangeOf(sweepOfSeven(), kStressDevice, StressCriterion::notBrokenDown);
+    EXPECT_EQ(range.first, "1e-3");
+    EXPECT_EQ(range.last, "1e2");
+    EXPECT_EQ(range.within, 6u);
 }
 
 TEST(StressPromises, AreBrokenByFaultsFailuresAndBiasesOfTheDeviceAlone) {
@@ -121,7 +128,7 @@ TEST(StressReport, OfAnotherRendererIsShownBesideOurs) {
     ASSERT_NE(sweep.steps[1].of("another"), nullptr);
     EXPECT_EQ(sweep.steps[1].of("another")->bias.estimate, 0.3);
     EXPECT_EQ(sweep.steps[2].of("another"), nullptr);
-    EXPECT_EQ(rangeOf(sweep, "another").breakdown, "1e-3");
+    EXPECT_EQ(rangeOf(sweep, "another").broken, std::vector<std::string>{"1e-3"});
     EXPECT_THROW(addFigures(run, nlohmann::ordered_json::parse(R"({"families": [{}]})"), "other.json"), Error);
     EXPECT_THROW(addFigures(run, nlohmann::ordered_json::parse("[]"), "other.json"), Error);
 }
@@ -140,7 +147,7 @@ TEST(StressReport, JsonHasEveryFigure) {
     const nlohmann::ordered_json json = nlohmann::ordered_json::parse(toJson(runOfSeven()).dump());
     EXPECT_EQ(json["schema"], 1);
     const auto& sweep = json["families"][0]["sweeps"][0];
-    EXPECT_EQ(sweep["range"]["device"]["breakdown"], "1e3");
+    EXPECT_EQ(sweep["range"]["device"]["broken"][0], "1e3");
     EXPECT_EQ(sweep["steps"].size(), 7u);
     EXPECT_EQ(sweep["steps"][6]["figures"][0]["bias"][1], 0.02);
     EXPECT_TRUE(sweep["steps"][5]["figures"][0]["bias"][0].is_null());
