@@ -104,7 +104,7 @@ void runFamilies(StressRun& result, const StressCommand& command, const Device& 
 }
 
 /// Samples a pixel of exported scenes, over those of the step: others share no random numbers with the truth.
-constexpr std::uint32_t kMoreSamples = 64;
+constexpr std::uint32_t kMoreSamples = 16;
 
 /// A file a step, FAMILY-SWEEP-NUMBER.json; steps that are no scenes have none.
 ExitCode exportSteps(const StressCommand& command) {
