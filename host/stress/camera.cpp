@@ -153,13 +153,6 @@ RenderTrial sphereBeyondPlanes(double distance) {
     return trial;
 }
 
-std::vector<PlannedStep> stepsAtDegrees(const std::vector<double>& degrees, const TrialAt& trialAt) {
-    std::vector<PlannedStep> steps;
-    for (const double angle : degrees)
-        steps.push_back({angle, fmt::format("{:g}", angle), trialOf([=] { return trialAt(angle); })});
-    return steps;
-}
-
 std::vector<PlannedSweep> fieldOfViewSweeps(Extent extent) {
     const StressSweep filling{
         .name = "field of view",
@@ -176,9 +169,9 @@ std::vector<PlannedSweep> fieldOfViewSweeps(Extent extent) {
         .limit = "A direction's components are rounded to u/2, u = 2^-24, and again as it is normalised: the lamp's "
                  "edges lie off by up to some u/(fov/2), 0.1 % at 0.007 degrees.",
         .promisedFrom = 0.01};
-    return {{filling, thinned(stepsAtDegrees({1e-4, 1e-3, 1e-2, 0.1, 1, 30, 90, 150, 170, 179, 179.9}, lampFillingView),
-                              extent)},
-            {detail, thinned(stepsAtDegrees({60, 10, 1, 0.1, 0.01, 1e-3, 1e-4}, lampAtDistanceOne), extent)}};
+    return {
+        {filling, thinned(stepsAt({1e-4, 1e-3, 1e-2, 0.1, 1, 30, 90, 150, 170, 179, 179.9}, lampFillingView), extent)},
+        {detail, thinned(stepsAt({60, 10, 1, 0.1, 0.01, 1e-3, 1e-4}, lampAtDistanceOne), extent)}};
 }
 
 PlannedSweep shapeSweep(Extent extent) {

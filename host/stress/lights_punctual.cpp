@@ -70,6 +70,7 @@ constexpr int kMany = 10'000;
 /// Evenly over the decades, 1 the brightest; in an order that has nothing to do with brightness.
 std::vector<double> intensitiesOver(double decades, std::mt19937_64& engine) {
     std::vector<double> intensities;
+    intensities.reserve(kMany);
     for (int i = 0; i < kMany; ++i) intensities.push_back(std::pow(10.0, -decades * i / (kMany - 1)));
     for (std::size_t i = intensities.size() - 1; i > 0; --i) std::swap(intensities[i], intensities[engine() % (i + 1)]);
     return intensities;

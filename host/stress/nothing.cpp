@@ -125,6 +125,7 @@ PlannedSweep sceneSweep(Extent extent) {
                                                                            {"no lights", noLights},
                                                                            {"all black", allBlack}}};
     std::vector<PlannedStep> steps;
+    steps.reserve(scenes.size());
     for (const auto& scene : scenes)
         steps.push_back({static_cast<double>(steps.size() + 1), scene.first, trialOf(scene.second)});
     return {about, thinned(std::move(steps), extent)};
@@ -235,6 +236,7 @@ PlannedSweep refusedSweep() {
         {"1e300 in a field of view", "/cameras/0/perspective/yfov: ", {.yfov = "1e300"}},
     };
     std::vector<PlannedStep> steps;
+    steps.reserve(all.size());
     for (const Wrong& wrong : all)
         steps.push_back({static_cast<double>(steps.size() + 1), wrong.label,
                          trialBy([wrong](const StressBench&) { return std::vector<StressFigures>{refused(wrong)}; })});

@@ -20,6 +20,14 @@ std::vector<PlannedStep> stepsBy(const Decades& decades, const TrialAt& trialAt)
     return steps;
 }
 
+std::vector<PlannedStep> stepsAt(const std::vector<double>& parameters, const TrialAt& trialAt) {
+    std::vector<PlannedStep> steps;
+    steps.reserve(parameters.size());
+    for (const double parameter : parameters)
+        steps.push_back({parameter, fmt::format("{:g}", parameter), trialOf([=] { return trialAt(parameter); })});
+    return steps;
+}
+
 std::vector<PlannedStep> thinned(std::vector<PlannedStep> steps, Extent extent) {
     if (extent == Extent::full || steps.size() <= 3) return steps;
     return {steps.front(), steps[steps.size() / 2], steps.back()};

@@ -22,6 +22,9 @@ struct Decades {
 /// A step a power, labelled "1e-7".
 [[nodiscard]] std::vector<PlannedStep> stepsBy(const Decades& decades, const TrialAt& trialAt);
 
+/// Any parameters, labelled by their shortest words.
+[[nodiscard]] std::vector<PlannedStep> stepsAt(const std::vector<double>& parameters, const TrialAt& trialAt);
+
 /// Of a quick sweep: the first, the middle and the last.
 [[nodiscard]] std::vector<PlannedStep> thinned(std::vector<PlannedStep> steps, Extent extent);
 

@@ -99,7 +99,8 @@ Mesh wallWithHole(double hole, std::uint32_t material) {
     const auto addRing = [&](double size) {
         for (const auto& [x, y] : kCorners) mesh.positions.push_back(Vec3f(x, y, 0.0f) * static_cast<float>(size));
     };
-    for (double size = hole; size < 1.0; size *= 4.0) {
+    double size = hole;
+    while (size < 1.0) {
         const auto inner = static_cast<std::uint32_t>(mesh.positions.size());
         addRing(size);
         for (std::uint32_t i = 0; i < 4; ++i) {
@@ -107,6 +108,7 @@ Mesh wallWithHole(double hole, std::uint32_t material) {
             mesh.triangles.push_back({inner + i, outer + i, outer + next});
             mesh.triangles.push_back({inner + i, outer + next, inner + next});
         }
+        size *= 4.0;
     }
     addRing(1.0);
     return mesh;
@@ -183,13 +185,6 @@ RenderTrial slab(double absorption, double thickness) {
 
 RenderTrial slabOfDepthOne(double absorption) { return slab(absorption, 1.0 / absorption); }
 RenderTrial slabOfDepth(double depth) { return slab(depth, 1.0); }
-
-std::vector<PlannedStep> stepsAt(const std::vector<double>& parameters, const TrialAt& trialAt) {
-    std::vector<PlannedStep> steps;
-    for (const double parameter : parameters)
-        steps.push_back({parameter, fmt::format("{:g}", parameter), trialOf([=] { return trialAt(parameter); })});
-    return steps;
-}
 
 std::vector<PlannedSweep> furnaceSweeps(Extent extent) {
     const bool full = extent == Extent::full;

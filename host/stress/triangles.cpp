@@ -183,6 +183,7 @@ RenderTrial convexAndWhite(Mesh mesh, const Mat4d& worldFromObject) {
 
 PlannedSweep sweepByCount(const StressSweep& about, const std::vector<int>& counts, RenderTrial (*trialOfCount)(int)) {
     std::vector<PlannedStep> steps;
+    steps.reserve(counts.size());
     for (const int count : counts)
         steps.push_back({static_cast<double>(count), fmt::format("{}", count),
                          trialOf([trialOfCount, count] { return trialOfCount(count); })});

@@ -21,6 +21,16 @@ struct Surface {
     vec3 barycentric; // on a triangle
 };
 
+// Barycentric coordinates at least twice the point's error away from the edges: nearer, it may lie beyond the neighbour that
+// meets the triangle there, and rays would leave a closed room. Never further than 2^-16 of the way to a corner, so that
+// slivers and small triangles, whose neighbours mostly lie in one plane with them, are left as they are.
+vec3 insideEdges(vec3 barycentric, vec3 p0, vec3 p1, vec3 p2, float area, float error) {
+    vec3 opposite = vec3(length(p2 - p1), length(p0 - p2), length(p1 - p0)); // 2 area / height over it
+    vec3 least = min(opposite * (error / max(area, 1e-30)), 1.5258789e-5);
+    vec3 moved = max(barycentric, least);
+    return all(greaterThanEqual(barycentric, least)) ? barycentric : moved / (moved.x + moved.y + moved.z);
+}
+
 // Point, error bound and normals of a triangle hit. Barycentric coordinates are found anew for the one triangle.
 void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransform transform, uint normalSection,
                      inout Surface surface) {
@@ -28,18 +38,19 @@ void triangleSurface(PrimitiveRecord primitive, uint index, Ray ray, RayTransfor
     vec3 p1 = primitive.p1Light.xyz;
     vec3 p2 = primitive.p2Id.xyz;
     TriangleHit hit = intersectTriangle(p0, p1, p2, ray, transform);
-    float b2 = 1.0 - hit.b0 - hit.b1;
-    surface.position = hit.b0 * p0 + hit.b1 * p1 + b2 * p2;
-    surface.error = errorBound(7.0) * (abs(hit.b0 * p0) + abs(hit.b1 * p1) + abs(b2 * p2)); // pbrt 6.8.4
+    vec3 b = vec3(hit.b0, hit.b1, 1.0 - hit.b0 - hit.b1);
+    surface.error = errorBound(7.0) * (abs(b.x * p0) + abs(b.y * p1) + abs(b.z * p2)); // pbrt 6.8.4
     float area;
     vec3 normal = triangleNormal(p0, p1, p2, -ray.direction, area);
+    b = insideEdges(b, p0, p1, p2, area, maxComponent(surface.error));
+    surface.position = b.x * p0 + b.y * p1 + b.z * p2;
     surface.front = dot(ray.direction, normal) <= 0.0;
     surface.facing = surface.front ? normal : -normal;
     surface.shading = surface.facing;
-    surface.barycentric = vec3(hit.b0, hit.b1, b2);
+    surface.barycentric = b;
     if (kSmoothNormals) {
         NormalRecord normals = readNormals(normalSection, index);
-        vec3 smoothNormal = hit.b0 * normals.n0.xyz + hit.b1 * normals.n1.xyz + b2 * normals.n2.xyz;
+        vec3 smoothNormal = b.x * normals.n0.xyz + b.y * normals.n1.xyz + b.z * normals.n2.xyz;
         float size = length(smoothNormal);
         if (size > 0.0) {
             smoothNormal /= size;
