@@ -42,8 +42,8 @@ struct PackedScene {
     double environmentPdf = 0.0;
     std::vector<std::uint32_t> firstOfObject; ///< first primitive id of each instance and each sphere, in scene order
     std::uint32_t stackBound = 1;             ///< entries of a traversal stack: as many as it must hold, or some more
-    /// Device radiance = this * world radiance: a power of two that brings the lights near 1, so that squares of radiance,
-    /// the variance, stay within single precision whatever the unit.
+    /// Device radiance = this * world radiance: a power of two that brings the lights near 1, so that squares of
+    /// radiance, the variance, stay within single precision whatever the unit.
     double radianceScale = 1.0;
     BvhStatistics bvh; ///< of the binary tree that `nodes` was made from
     DeviceSpace space;

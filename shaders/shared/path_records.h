@@ -58,7 +58,8 @@ ISOLUX_CHECK_SIZE(SampleRecord, 256);
 
 // Constant over a render.
 struct RenderParameters {
-    vec4 cameraPosition; // device space: where the axis meets the plane that rays start on; w: 1 for an orthographic camera, else 0
+    vec4 cameraPosition; // device space: where the axis meets the plane that rays start on; w: 1 for an orthographic
+                         // camera, else 0
     vec4 cameraRight;    // to the image's right edge: for a perspective camera at unit distance
     vec4 cameraUp;       // to its top edge
     vec4 cameraForward;  // unit; w: how far that plane lies before the camera
