@@ -11,6 +11,9 @@ namespace {
 constexpr double kNear = 8.0;
 /// Nearer to something than this share of the scene's half extent, the camera sees detail that the scene is large for.
 constexpr double kClose = 1.0 / 64.0;
+/// In device space, how far before the scene rays of far cameras start: a face that lies in the very plane the scene
+/// ends with would be met at a distance of zero, or not at all.
+constexpr double kBefore = 1.0 / 16.0;
 
 double distanceTo(const Box3d& box, const Vec3d& point) {
     return glm::length(glm::max(glm::max(box.lower - point, point - box.upper), Vec3d(0.0)));
@@ -23,7 +26,7 @@ Box3d boundsOf(const Scene& scene, const Instance& instance) {
     return bounds;
 }
 
-/// From a point to the nearest object, by their bounds.
+/// From a point to the nearest object, by their bounds: within a mesh's it is zero.
 double distanceToNearest(const Scene& scene, const Vec3d& point) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Instance& instance : scene.instances)
@@ -81,7 +84,7 @@ double startDistance(const Scene& scene, const Camera& camera, const DeviceSpace
     const Vec3d forward = -camera.worldFromCamera[2];
     // The corner of the bounds that lies least far along the axis.
     const Vec3d corner = glm::mix(bounds.lower, bounds.upper, glm::lessThan(forward, Vec3d(0.0)));
-    return std::max(glm::dot(corner - camera.position, forward) * space.scale, 0.0);
+    return std::max(glm::dot(corner - camera.position, forward) * space.scale - kBefore, 0.0);
 }
 
 } // namespace isolux

@@ -12,8 +12,8 @@ namespace isolux {
 
 /// Device space is the world moved and scaled so that the scene lies in [-1, 1]: float then has the same relative
 /// accuracy for every scene. The scale is a power of two, so scaling itself rounds nothing. Its origin, about which
-/// floats are finest, is the middle of the scene or, if the camera is much closer to something than the scene is large,
-/// the camera.
+/// floats are finest, is the middle of the scene or, if the camera is within the bounds of a mesh or a sphere or much
+/// closer to them than the scene is large, the camera.
 struct DeviceSpace {
     Vec3d center{0.0};
     double scale = 1.0; ///< device length = scale * world length
@@ -31,7 +31,7 @@ using TriangleCorners = std::array<Vec3f, 3>;
 /// Those of the whole scene: the index is the primitive id.
 [[nodiscard]] std::vector<TriangleCorners> deviceTriangles(const Scene& scene, const RenderSettings& settings);
 
-/// How far before the camera its rays start, in device space: on a plane that no part of the scene lies before. Zero
+/// How far before the camera its rays start, in device space: on a plane that lies before every part of the scene. Zero
 /// for cameras within or near the scene. From far away a ray's own rounding would be as large as what it looks at.
 [[nodiscard]] double startDistance(const Scene& scene, const Camera& camera, const DeviceSpace& space);
 

@@ -56,11 +56,10 @@ public:
     }
 
 private:
-    /// The largest component that any light record will hold, in the world's radiance.
     /// Between the brightest and the dimmest light, in logarithms: what either sends must stay in range. The brightest
     /// is at most kHeadroom above, so that its square has room to be summed.
     [[nodiscard]] double typicalLight(double environmentTexel) const {
-        constexpr double kHeadroom = 0x1p50;
+        constexpr double kHeadroom = 0x1p30;
         double brightest = 0.0;
         double dimmest = std::numeric_limits<double>::infinity();
         const auto note = [&](double light) {

@@ -61,8 +61,11 @@ void RayQuery::traceChunk(std::span<const shared::RayRecord> rays, std::vector<s
     } else {
         const auto step =
             static_cast<std::uint32_t>(std::clamp(kTestsPerDispatch / rayCount, 1.0, kPrimitivesPerDispatch));
-        for (std::uint32_t begin = 0; begin < primitives; begin += step)
+        std::uint32_t begin = 0;
+        do { // also without primitives: the misses have to be written
             dispatch(rayCount, begin, std::min(begin + step, primitives));
+            begin += step;
+        } while (begin < primitives);
     }
     hitBuffer.invalidate();
     const auto* found = reinterpret_cast<const shared::HitRecord*>(hitBuffer.mapped().data());

@@ -36,4 +36,7 @@ inline constexpr int kReportSchema = 1;
 /// The document as text, indented, with an end of line. Bytes that are not UTF-8 (a driver's name) are replaced.
 [[nodiscard]] std::string jsonText(const nlohmann::ordered_json& document);
 
+/// The text for a page, as content or between double quotes.
+[[nodiscard]] std::string escapedHtml(const std::string& text);
+
 } // namespace isolux

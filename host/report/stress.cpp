@@ -85,6 +85,34 @@ void addToSweep(StressSweep& sweep, const ordered_json& steps) {
     }
 }
 
+/// What no step may have, wherever it lies: a renderer that gives no figures, samples that are no light, and a
+/// reference that says nothing of the device.
+std::vector<std::string> unsound(const StressStep& step) {
+    std::vector<std::string> found;
+    const StressFigures& device = *step.of(kStressDevice);
+    if (!device.failure.empty()) found.push_back(device.failure);
+    if (!device.faults.sound()) found.push_back(formatFaults(device.faults));
+    const StressFigures* reference = step.of(kStressDouble);
+    if (reference == nullptr) return found;
+    if (!reference->failure.empty()) found.push_back(fmt::format("{}: {}", kStressDouble, reference->failure));
+    if (!reference->faults.sound())
+        found.push_back(fmt::format("{}: {}", kStressDouble, formatFaults(reference->faults)));
+    const bool isImage = !std::isnan(reference->mean);
+    if (isImage && device.failure.empty() && std::isnan(device.bias.estimate))
+        found.push_back("the device's image has nothing to be compared with");
+    return found;
+}
+
+/// Hundreds of errors are asked: a 95 % interval times this reaches 4.5 standard errors, which none leaves by chance.
+constexpr double kOfHundreds = 2.3;
+
+bool contradicts(const Interval& error) {
+    if (!error.known()) return false;
+    const Interval wide{error.estimate - kOfHundreds * (error.estimate - error.low), error.estimate,
+                        error.estimate + kOfHundreds * (error.high - error.estimate)};
+    return verdictOf(wide, kStressTolerance) == StressVerdict::beyond;
+}
+
 } // namespace
 
 const Interval& StressFigures::deviation() const { return std::isnan(bias.estimate) ? error : bias; }
@@ -100,6 +128,11 @@ StressVerdict verdictOf(const Interval& deviation, double tolerance) {
     const double high = deviation.known() ? deviation.high : deviation.estimate;
     if (low >= -tolerance && high <= tolerance) return StressVerdict::within;
     return low > tolerance || high < -tolerance ? StressVerdict::beyond : StressVerdict::unknown;
+}
+
+StressCriterion criterionFor(const std::string& renderer) {
+    const bool ours = renderer == kStressDevice || renderer == kStressSingle || renderer == kStressDouble;
+    return ours ? StressCriterion::holds : StressCriterion::notBrokenDown;
 }
 
 StressRange rangeOf(const StressSweep& sweep, const std::string& renderer, StressCriterion criterion) {
@@ -142,22 +175,52 @@ StressFaults totalFaults(const StressFamily& family, const std::string& renderer
     return total;
 }
 
-std::vector<std::string> brokenPromises(const std::vector<StressFamily>& families) {
-    std::vector<std::string> broken;
+bool isPromised(const StressSweep& sweep, const StressStep& step) {
+    return sweep.promisedFrom <= step.parameter && step.parameter <= sweep.promisedTo;
+}
+
+StressSummary summarize(const std::vector<StressFamily>& families) {
+    StressSummary summary;
     for (const StressFamily& family : families)
         for (const StressSweep& sweep : family.sweeps)
             for (const StressStep& step : sweep.steps) {
-                const StressFigures* figures = step.of(kStressDevice);
-                if (figures == nullptr) continue;
-                const std::string place = fmt::format("{}, {}, {}", family.name, sweep.name, step.label);
-                if (!figures->failure.empty()) broken.push_back(fmt::format("{}: {}", place, figures->failure));
-                const bool promised = sweep.promisedFrom <= step.parameter && step.parameter <= sweep.promisedTo;
-                if (!(promised ? figures->faults.clean() : figures->faults.sound()))
-                    broken.push_back(fmt::format("{}: {}", place, formatFaults(figures->faults)));
-                if (promised && verdictOf(figures->deviation(), kStressTolerance) == StressVerdict::beyond)
-                    broken.push_back(fmt::format("{}: {}", place, formatPercentInterval(figures->deviation())));
+                const StressFigures* device = step.of(kStressDevice);
+                if (device == nullptr) continue;
+                const bool promised = isPromised(sweep, step);
+                const bool unknown = verdictOf(device->deviation(), kStressTolerance) == StressVerdict::unknown;
+                ++summary.steps;
+                summary.promised += promised ? 1 : 0;
+                summary.broken += brokenPromises(sweep, step).empty() ? 0 : 1;
+                summary.unknown += promised && unknown ? 1 : 0;
             }
+    return summary;
+}
+
+std::vector<std::string> brokenPromises(const StressSweep& sweep, const StressStep& step) {
+    const StressFigures* device = step.of(kStressDevice);
+    if (device == nullptr) return {};
+    std::vector<std::string> broken = unsound(step);
+    if (!isPromised(sweep, step)) return broken;
+    if (device->faults.sound() && !device->faults.clean()) broken.push_back(formatFaults(device->faults));
+    if (verdictOf(device->deviation(), kStressTolerance) == StressVerdict::beyond)
+        broken.push_back(formatPercentInterval(device->deviation()));
+    for (const char* renderer : {kStressDevice, kStressDouble}) {
+        const StressFigures* figures = step.of(renderer);
+        if (figures != nullptr && contradicts(figures->error))
+            broken.push_back(fmt::format("{} is {} from what is known in closed form", renderer,
+                                         formatPercentInterval(figures->error)));
+    }
     return broken;
+}
+
+std::vector<std::string> brokenPromises(const std::vector<StressFamily>& families) {
+    std::vector<std::string> lines;
+    for (const StressFamily& family : families)
+        for (const StressSweep& sweep : family.sweeps)
+            for (const StressStep& step : sweep.steps)
+                for (const std::string& broken : brokenPromises(sweep, step))
+                    lines.push_back(fmt::format("{}, {}, {}: {}", family.name, sweep.name, step.label, broken));
+    return lines;
 }
 
 void addFigures(StressRun& run, const ordered_json& document, const std::string& file) {

@@ -98,6 +98,9 @@ enum class StressCriterion {
                   ///< truth
 };
 
+/// What is asked of a renderer: of ours that it holds.
+[[nodiscard]] StressCriterion criterionFor(const std::string& renderer);
+
 /// How far a renderer gets in a sweep: the longest run of steps that meet the criterion.
 struct StressRange {
     std::string first; ///< label; empty without any
@@ -112,8 +115,25 @@ struct StressRange {
 
 [[nodiscard]] StressFaults totalFaults(const StressFamily& family, const std::string& renderer);
 
-/// What the device did not keep to, a line each: a failure or samples that are no light anywhere, any other fault or a
-/// bias beyond the tolerance at a promised step.
+/// Whether the device is to be right at a step.
+[[nodiscard]] bool isPromised(const StressSweep& sweep, const StressStep& step);
+
+/// How many steps the device has taken, and what is known of the promised ones.
+struct StressSummary {
+    std::size_t steps = 0;
+    std::size_t promised = 0;
+    std::size_t broken = 0;  ///< steps that break a promise
+    std::size_t unknown = 0; ///< promised ones whose interval is too wide to tell
+};
+[[nodiscard]] StressSummary summarize(const std::vector<StressFamily>& families);
+/// "of 652 steps 600 are promised: ..."
+[[nodiscard]] std::string toText(const StressSummary& summary);
+
+/// What was not kept to at a step, a line each: at any step a failure or samples that are no light, of the device or of
+/// the double reference it is held to; at a promised one any other fault of the device, its bias if that is beyond the
+/// tolerance, and an answer in closed form that device or reference contradict.
+[[nodiscard]] std::vector<std::string> brokenPromises(const StressSweep& sweep, const StressStep& step);
+/// Of all, each with its place.
 [[nodiscard]] std::vector<std::string> brokenPromises(const std::vector<StressFamily>& families);
 
 /// What was run on what.

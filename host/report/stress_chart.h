@@ -1,4 +1,4 @@
-// The chart of a sweep, and what text needs to stand in a page.
+// The chart of a sweep.
 #pragma once
 
 #include "report/stress.h"
@@ -7,8 +7,6 @@
 #include <vector>
 
 namespace isolux {
-
-[[nodiscard]] std::string escapedHtml(const std::string& text);
 
 /// Deviation against stiffness as SVG, in the page's colours; empty if no step has a deviation. The index of a renderer
 /// is that of its colour.

@@ -90,6 +90,15 @@ std::string rangeText(const StressSweep& sweep, const std::string& renderer) {
     return fmt::format("  {:<17} {}\n", renderer, text);
 }
 
+std::string promiseText(const StressSweep& sweep) {
+    std::vector<const StressStep*> promised;
+    for (const StressStep& step : sweep.steps)
+        if (isPromised(sweep, step)) promised.push_back(&step);
+    const std::string range =
+        promised.empty() ? "of none" : fmt::format("from {} to {}", promised.front()->label, promised.back()->label);
+    return fmt::format("  {:<17} {} ({} of {} steps)\n", "promised", range, promised.size(), sweep.steps.size());
+}
+
 std::string sweepText(const StressSweep& sweep) {
     const Columns columns = anyError(sweep) ? Columns::biasAndError : Columns::bias;
     std::vector<Row> rows{{sweep.axisTitle, "device", "single precision"}};
@@ -97,7 +106,7 @@ std::string sweepText(const StressSweep& sweep) {
     rows.front().push_back("faults");
     for (const StressStep& step : sweep.steps) rows.push_back(rowOf(step, columns));
     std::string text = fmt::format("{}: {}\n{}", sweep.name, sweep.title, tableText(rows));
-    text += "within 0.1 %\n" + rangeText(sweep, kStressDevice) + rangeText(sweep, kStressSingle);
+    text += "within 0.1 %\n" + rangeText(sweep, kStressDevice) + rangeText(sweep, kStressSingle) + promiseText(sweep);
     return text + fmt::format("limit: {}\n", sweep.limit);
 }
 
@@ -127,20 +136,31 @@ ordered_json toJson(const StressRange& range) {
             {"broken", range.broken}};
 }
 
+/// Of every renderer but the one that biases are taken from.
+ordered_json rangesJson(const StressSweep& sweep) {
+    ordered_json json = ordered_json::object();
+    for (const StressStep& step : sweep.steps)
+        for (const StressFigures& figures : step.figures)
+            if (figures.renderer != kStressDouble && !json.contains(figures.renderer))
+                json[figures.renderer] = toJson(rangeOf(sweep, figures.renderer, criterionFor(figures.renderer)));
+    return json;
+}
+
 ordered_json toJson(const StressSweep& sweep) {
     ordered_json json{{"name", sweep.name},
                       {"title", sweep.title},
                       {"axis", sweep.axisTitle},
                       {"logarithmic", sweep.axis == StressAxis::logarithmic},
                       {"limit", sweep.limit},
-                      {"range",
-                       {{kStressDevice, toJson(rangeOf(sweep, kStressDevice))},
-                        {kStressSingle, toJson(rangeOf(sweep, kStressSingle))}}},
+                      {"range", rangesJson(sweep)},
                       {"steps", ordered_json::array()}};
     for (const StressStep& step : sweep.steps) {
         ordered_json figures = ordered_json::array();
         for (const StressFigures& entry : step.figures) figures.push_back(toJson(entry));
-        json["steps"].push_back({{"parameter", step.parameter}, {"label", step.label}, {"figures", figures}});
+        json["steps"].push_back({{"parameter", step.parameter},
+                                 {"label", step.label},
+                                 {"promised", isPromised(sweep, step)},
+                                 {"figures", figures}});
     }
     return json;
 }
@@ -160,6 +180,14 @@ std::string toText(const StressFamily& family) {
     return text;
 }
 
+std::string toText(const StressSummary& summary) {
+    std::string text = fmt::format("{} steps, {} of them promised", summary.steps, summary.promised);
+    text += summary.broken == 0 ? ": none has a fault or a bias beyond 0.1 %"
+                                : fmt::format(": promises are broken at {}", summary.broken);
+    if (summary.unknown > 0) text += fmt::format("; at {} the interval is too wide to tell", summary.unknown);
+    return text;
+}
+
 ordered_json toJson(const StressRun& run) {
     ordered_json json{{"schema", kReportSchema},
                       {"version", run.version},
@@ -174,6 +202,11 @@ ordered_json toJson(const StressRun& run) {
         for (const StressSweep& sweep : family.sweeps) sweeps.push_back(toJson(sweep));
         json["families"].push_back({{"name", family.name}, {"title", family.title}, {"sweeps", sweeps}});
     }
+    const StressSummary summary = summarize(run.families);
+    json["summary"] = {{"steps", summary.steps},
+                       {"promised", summary.promised},
+                       {"broken", summary.broken},
+                       {"unknown", summary.unknown}};
     json["broken"] = brokenPromises(run.families);
     return json;
 }

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace isolux {
 namespace {
@@ -96,22 +97,26 @@ ordered_json exported(const Scene& scene, std::uint32_t camera) {
     return json;
 }
 
-Interval truthOf(const RenderTrial& trial, std::uint32_t moreSamples) {
+/// Nothing if it was interrupted.
+std::optional<Interval> truthOf(const RenderTrial& trial, std::uint32_t moreSamples, const ProgressCallback& progress) {
     if (trial.expected) {
         const double uncertainty = std::abs(*trial.expected) * trial.expectedUncertainty;
-        return {*trial.expected - uncertainty, *trial.expected, *trial.expected + uncertainty};
+        return Interval{*trial.expected - uncertainty, *trial.expected, *trial.expected + uncertainty};
     }
     RenderSettings settings = trial.settings;
     settings.sampleCount *= moreSamples;
-    const Film film = renderReference(trial.scene, settings, {}, {});
+    const Film film = renderReference(trial.scene, settings, {}, progress);
+    if (film.minSampleCount() < settings.sampleCount) return std::nullopt;
     return normalInterval(meanLuminance(film), standardError(film));
 }
 
 } // namespace
 
-ordered_json exportTrial(const RenderTrial& trial, std::uint32_t moreSamples) {
+ordered_json exportTrial(const RenderTrial& trial, std::uint32_t moreSamples, const ProgressCallback& progress) {
     const Scene& scene = trial.scene;
     if (!scene.textures.empty() || scene.environment.map || scene.cameras.empty()) return {};
+    const std::optional<Interval> truth = truthOf(trial, moreSamples, progress);
+    if (!truth) return {};
     const RenderSettings& settings = trial.settings;
     ordered_json json = exported(scene, settings.camera);
     json["width"] = settings.width;
@@ -120,7 +125,7 @@ ordered_json exportTrial(const RenderTrial& trial, std::uint32_t moreSamples) {
     json["aperture"] = settings.lens.aperture;
     json["focus"] = settings.lens.focus;
     json["maxDepth"] = settings.maxDepth == kUnlimitedDepth ? ordered_json() : ordered_json(settings.maxDepth);
-    json["truth"] = toJson(truthOf(trial, moreSamples));
+    json["truth"] = toJson(*truth);
     return json;
 }
 

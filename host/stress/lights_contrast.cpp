@@ -94,15 +94,16 @@ RenderTrial sunInSky(double sun) {
 }
 
 PlannedSweep besideSweep(Extent extent) {
-    const StressSweep about{
-        "beside",
-        "A dim room beside a bright lamp, emission 1 to 1e36: what is seen is the room",
-        "ratio of their radiance",
-        StressAxis::logarithmic,
-        "Radiance is scaled so that the brightest light is near 1; the dim one is then 1e-36, and normal numbers end "
-        "at 1.2e-38. Nearly all light samples go to the lamp and every one must be blocked by the walls: a single "
-        "leak would be seen. The room is found by scattering.",
-        {}};
+    const StressSweep about{"beside",
+                            "A dim room beside a bright lamp, emission 1 to 1e36: what is seen is the room",
+                            "ratio of their radiance",
+                            StressAxis::logarithmic,
+                            "Radiance is scaled so that what lies halfway between the lights, in logarithms, is near "
+                            "1, but the brighter at "
+                            "most 2^30: the dim one is then 1e-27, and normal numbers end at 1.2e-38. Nearly all light "
+                            "samples go to the lamp and every one must be blocked by the walls: a single "
+                            "leak would be seen. The room is found by scattering.",
+                            {}};
     return {about, thinned(stepsBy({0, 36, 4}, brightBesideDim), extent)};
 }
 

@@ -43,7 +43,7 @@ struct SceneBuilder {
 /// The size of a sweep's images: few pixels and many samples or the other way round.
 [[nodiscard]] RenderSettings stressSettings(std::uint32_t size, std::uint32_t samples);
 
-/// A Cornell box of edge 2 about the origin: coloured walls, a lamp in the ceiling, two blocks; from z = 5.
+/// A Cornell box of edge 2 about the origin: coloured walls, a lamp in the ceiling, two blocks; from z = 4.9.
 [[nodiscard]] Scene cornellBox();
 
 /// The scene with all lengths times `factor`; intensities of punctual lights grow so that surfaces look the same.

@@ -8,14 +8,18 @@
 #include "stress/film_mean.h"
 #include "stress/ray_trial.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace isolux {
 namespace {
 
+bool stopped(const StressBench& bench) { return bench.interrupted && bench.interrupted(); }
+
 ProgressCallback stopping(const StressBench& bench) {
-    return [&bench](double) { return bench.interrupted && bench.interrupted() ? Continue::no : Continue::yes; };
+    return [&bench](double) { return stopped(bench) ? Continue::no : Continue::yes; };
 }
 
 Film onDevice(const RenderTrial& trial, const Scene& scene, const StressBench& bench) {
@@ -40,11 +44,15 @@ Interval errorOf(const Film& film, const RenderTrial& trial) {
     return error;
 }
 
+/// By squares, so that faults that brighten do not make up for those that darken. A pixel has no more than samples.
 std::uint64_t probeFaults(const Film& film, const Probe& probe) {
     std::uint64_t faults = 0;
     for (const PixelStatistics& pixel : film.pixels) {
-        const double change = std::abs(luminance(pixel.mean) - probe.value) * static_cast<double>(pixel.sampleCount);
-        faults += static_cast<std::uint64_t>(std::llround(change / probe.faultChange));
+        const double shift = luminance(pixel.mean) - probe.value;
+        const auto count = static_cast<double>(pixel.sampleCount);
+        const double squares = pixel.luminanceSquaredDeviation + count * shift * shift;
+        const double changed = squares / (probe.faultChange * probe.faultChange);
+        faults += static_cast<std::uint64_t>(std::llround(std::min(changed, count)));
     }
     return faults;
 }
@@ -69,10 +77,11 @@ std::uint64_t differentPixels(const Film& film, const Film& other, double factor
     return different;
 }
 
-/// Two black images do not differ, and the bias of something from nothing is no number.
+/// Two black images do not differ, and something is infinitely more than nothing.
 Interval biasOf(const Film& film, const Film& reference) {
-    if (meanLuminance(reference) == 0.0) return {};
-    return pairedDifferences(film, reference).luminanceBias;
+    if (meanLuminance(reference) != 0.0) return pairedDifferences(film, reference).luminanceBias;
+    const double bias = meanLuminance(film) == 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+    return {bias, bias, bias};
 }
 
 /// What a renderer makes of the trial; nothing to compare with yet.
@@ -81,14 +90,17 @@ struct Rendered {
     std::optional<Film> film;
 };
 
+/// `render` may count what only it knows of.
 template <typename Render> Rendered tried(const char* renderer, const RenderTrial& trial, const Render& render) {
     Rendered rendered;
     rendered.figures.renderer = renderer;
     const Stopwatch watch;
     try {
-        rendered.film = render();
+        std::uint64_t differentBits = 0;
+        rendered.film = render(differentBits);
         rendered.figures.mean = meanLuminance(*rendered.film);
         rendered.figures.faults = faultsOf(*rendered.film, trial);
+        rendered.figures.faults.differentBits = differentBits;
         if (trial.expected) rendered.figures.error = errorOf(*rendered.film, trial);
     } catch (const Error& error) {
         if (error.code() == ExitCode::tryAgain) throw;
@@ -98,21 +110,36 @@ template <typename Render> Rendered tried(const char* renderer, const RenderTria
     return rendered;
 }
 
-std::vector<StressFigures> runTrial(const RenderTrial& trial, const StressBench& bench) {
-    Rendered device = tried(kStressDevice, trial, [&] { return onDevice(trial, trial.scene, bench); });
-    if (device.film && trial.sameBitsAs)
-        device.figures.faults.differentBits =
-            differentPixels(*device.film, onDevice(trial, *trial.sameBitsAs, bench), trial.imageFactor);
+Rendered triedOnDevice(const RenderTrial& trial, const StressBench& bench) {
+    return tried(kStressDevice, trial, [&](std::uint64_t& differentBits) {
+        Film film = onDevice(trial, trial.scene, bench);
+        if (trial.sameBitsAs && !stopped(bench))
+            differentBits = differentPixels(film, onDevice(trial, *trial.sameBitsAs, bench), trial.imageFactor);
+        return film;
+    });
+}
+
+Rendered triedOnProcessor(const char* renderer, Precision precision, const RenderTrial& trial,
+                          const StressBench& bench) {
+    return tried(renderer, trial, [&](std::uint64_t&) { return onProcessor(trial, precision, bench); });
+}
+
+std::vector<Rendered> renderedByAll(const RenderTrial& trial, const StressBench& bench) {
     std::vector<Rendered> all;
-    all.push_back(std::move(device));
-    if (trial.renderers != Renderers::deviceAlone)
-        all.push_back(
-            tried(kStressSingle, trial, [&] { return onProcessor(trial, Precision::singlePrecision, bench); }));
-    if (trial.renderers == Renderers::all)
-        all.push_back(
-            tried(kStressDouble, trial, [&] { return onProcessor(trial, Precision::doublePrecision, bench); }));
-    const std::optional<Film>& reference = all.back().film;
+    all.push_back(triedOnDevice(trial, bench));
+    if (trial.renderers != Renderers::deviceAlone && !stopped(bench))
+        all.push_back(triedOnProcessor(kStressSingle, Precision::singlePrecision, trial, bench));
+    if (trial.renderers == Renderers::all && !stopped(bench))
+        all.push_back(triedOnProcessor(kStressDouble, Precision::doublePrecision, trial, bench));
+    return all;
+}
+
+/// Nothing if it was interrupted: films that were cut short hold different samples, or none.
+std::vector<StressFigures> runTrial(const RenderTrial& trial, const StressBench& bench) {
+    std::vector<Rendered> all = renderedByAll(trial, bench);
     std::vector<StressFigures> figures;
+    if (stopped(bench)) return figures;
+    const std::optional<Film>& reference = all.back().film;
     for (Rendered& rendered : all) {
         const bool isReference = &rendered == &all.back();
         if (trial.renderers == Renderers::all && !isReference && reference && rendered.film)

@@ -17,10 +17,10 @@ namespace isolux {
 /// What a sample whose value differs from the expected one is a sign of.
 enum class Symptom { leak, selfHit };
 
-/// A scene in which every sample has the same value, but for rounding; a fault costs a sample a share of it.
+/// A scene in which every sample has the same value, but for rounding, and another one after a fault.
 struct Probe {
     double value = 0.0;
-    double faultChange = 1.0; ///< how much a fault changes a sample by: the faults are the change divided by this
+    double faultChange = 1.0; ///< how much a fault changes a sample by, up or down, at least: more than rounding does
     Symptom symptom = Symptom::leak;
 };
 
@@ -75,7 +75,8 @@ struct StressBench {
 
 using Trial = std::function<std::vector<StressFigures>(const StressBench&)>;
 
-/// The trials as functions. An Error in one renderer is that renderer's `failure`; a lost device is thrown on.
+/// The trials as functions. An Error in one renderer is that renderer's `failure`; a lost device is thrown on. What was
+/// interrupted has no figures.
 [[nodiscard]] Trial trialOf(std::function<RenderTrial()> make);
 [[nodiscard]] Trial trialOf(std::function<RayTrial()> make);
 /// A step that is neither; there is nothing to export.

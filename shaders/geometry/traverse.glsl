@@ -140,8 +140,8 @@ void visitNode(uint node, Query query, RayTransform transform, inout Traversal s
     pushChild(entries.w, children.w, state.stackCount, overflows);
 }
 
-// Where a ray enters the box of a triangle, kFarthest if it misses that: never later than the boxes of the nodes above it, and
-// never where it misses one of those, as their planes lie further out and the arithmetic is the same.
+// Where a ray enters the box of a triangle, kFarthest if it misses that: never earlier than the boxes of the nodes above it,
+// and never where it misses one of those, as their planes lie further out and the arithmetic is the same.
 float entryOf(vec3 p0, vec3 p1, vec3 p2, RayTransform transform) {
     precise vec3 lower = (min(p0, min(p1, p2)) - transform.lowerOrigin) * transform.inverseDirection;
     precise vec3 upper = (max(p0, max(p1, p2)) - transform.upperOrigin) * transform.inverseDirection;

@@ -5,6 +5,8 @@
 #include "reference/reference.h"
 #include "report/paired.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,6 +35,7 @@ protected:
     void expectAgreement(const Scene& scene, const RenderSettings& settings, double agreement = kAgreement) {
         const PairedDifferences differences = compare(scene, settings);
         SCOPED_TRACE(toText(differences));
+        record(differences);
         EXPECT_GT(differences.litPixels, settings.width * settings.height / 10);
         EXPECT_EQ(differences.unexplained, 0u);
         // One explained pixel is allowed in images of any size: every driver rounds its own way.
@@ -41,7 +44,13 @@ protected:
         // As `isolux verify` has it: paths that rounding turned differ at random, by more than this where they are few.
         EXPECT_LT(differences.luminanceBias.low, kMaxRelativeBias);
         EXPECT_GT(differences.luminanceBias.high, -kMaxRelativeBias);
+        // But none so wide that it says nothing.
+        EXPECT_LT(std::abs(differences.luminanceBias.estimate), 10.0 * kMaxRelativeBias);
     }
+
+private:
+    /// Figures of the test's last comparison, for `tools/bench/drivers --surfaces`.
+    static void record(const PairedDifferences& differences) { RecordProperty("paired", toJson(differences).dump()); }
 };
 
 } // namespace isolux::test

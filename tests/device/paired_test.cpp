@@ -73,6 +73,32 @@ TEST_F(Paired, DegenerateTriangles) {
     expectAgreement(scene, imageSettings(64, 64, 32));
 }
 
+/// Faces square to the axis of a camera far away lie in the very plane that the scene ends with: rays start before it.
+TEST_F(Paired, FarFaceSquareToTheCamera) {
+    Scene scene;
+    scene.name = "a poster far away";
+    scene.materials.push_back({"white", Vec3d(0.5)});
+    Mesh square;
+    square.name = "square";
+    square.positions = {{-1, -1, 0.3f}, {1, -1, 0.3f}, {1, 1, 0.3f}, {-1, 1, 0.3f}};
+    square.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene.meshes.push_back(square);
+    scene.instances.push_back({"square", 0, Mat4d(1.0)});
+    scene.environment.radiance = Vec3d(1.0);
+    for (const double distance : {20.0, 100.0, 1e5}) {
+        for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+            Camera camera;
+            camera.projection = projection;
+            camera.position = Vec3d(0.0, 0.0, distance);
+            camera.yfov = 2.0 * std::atan(1.5 / distance);
+            camera.ymag = 1.5;
+            scene.cameras = {camera};
+            SCOPED_TRACE(distance);
+            expectAgreement(scene, imageSettings(24, 24, 8));
+        }
+    }
+}
+
 /// Mirrored, rotated and sheared instances of a smooth mesh, shared between them.
 TEST_F(Paired, InstancesWithNegativeScale) {
     Scene scene = loadScene(projectScene("cornell_spheres"));

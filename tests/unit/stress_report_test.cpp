@@ -99,6 +99,57 @@ TEST(StressPromises, AreBrokenByFaultsFailuresAndBiasesOfTheDeviceAlone) {
     EXPECT_EQ(broken[1], "lights, size, 1e-2: no");
 }
 
+TEST(StressPromises, AreBrokenByAReferenceThatSaysNothing) {
+    std::vector<StressFamily> families = runOfSeven().families;
+    StressSweep& sweep = families[0].sweeps[0];
+    sweep.steps.pop_back();
+    StressFigures reference = figures(kStressDouble, {});
+    reference.mean = 1.0;
+    sweep.steps[0].figures.push_back(reference);
+    EXPECT_TRUE(brokenPromises(families).empty());
+    sweep.steps[0].figures[0].bias = {};
+    EXPECT_EQ(brokenPromises(families),
+              std::vector<std::string>{"lights, size, 1e-3: the device's image has nothing to be compared with"});
+    reference.failure = "no";
+    reference.faults.nonFinite = 3;
+    sweep.steps[0].figures.back() = reference;
+    sweep.promisedFrom = 1.0; // it is needed beyond the promised range as well
+    EXPECT_EQ(brokenPromises(families).size(), 3u);
+}
+
+/// Also where device and reference agree: within chance, as many errors are asked.
+TEST(StressPromises, AreBrokenByAnswersThatContradictTheClosedForm) {
+    std::vector<StressFamily> families = runOfSeven().families;
+    StressSweep& sweep = families[0].sweeps[0];
+    sweep.steps.pop_back();
+    StressFigures& device = sweep.steps[0].figures[0];
+    device.error = {0.002, 0.006, 0.010};
+    EXPECT_TRUE(brokenPromises(families).empty()) << "three standard errors";
+    device.error = {0.004, 0.006, 0.008};
+    const std::vector<std::string> broken = brokenPromises(families);
+    ASSERT_EQ(broken.size(), 1u);
+    EXPECT_EQ(broken[0],
+              "lights, size, 1e-3: device is +0.600 % [+0.400 %, +0.800 %] from what is known in closed form");
+    sweep.promisedFrom = 1.0;
+    EXPECT_TRUE(brokenPromises(families).empty());
+}
+
+TEST(StressSummary, CountsPromisedStepsAndThoseThatCannotBeTold) {
+    std::vector<StressFamily> families = runOfSeven().families;
+    StressSweep& sweep = families[0].sweeps[0];
+    sweep.promisedTo = 100.0;
+    sweep.steps[0].figures[0].bias = {-0.002, 0.0, 0.002};
+    StressSummary summary = summarize(families);
+    EXPECT_EQ(summary.steps, 7u);
+    EXPECT_EQ(summary.promised, 6u);
+    EXPECT_EQ(summary.broken, 0u);
+    EXPECT_GE(summary.unknown, 1u);
+    EXPECT_TRUE(toText(summary).starts_with("7 steps, 6 of them promised: none has a fault")) << toText(summary);
+    sweep.promisedTo = 1000.0;
+    EXPECT_EQ(summarize(families).broken, 1u);
+    EXPECT_TRUE(toText(summarize(families)).starts_with("7 steps, 7 of them promised: promises are broken at 1"));
+}
+
 TEST(StressPromises, EndWhereTheSweepSaysSo) {
     std::vector<StressFamily> families = runOfSeven().families;
     families[0].sweeps[0].promisedTo = 100.0;
