@@ -28,12 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kDefaultWidth = 128;
 
-void makeFolder(const std::string& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!isWritableFolder(folder)) throwBadInput(folder, "cannot be made, or nothing can be written there");
-}
-
 FitOptions fitOptions(const ConvergeOptions& options) {
     FitOptions fit;
     fit.errors = options.errors;

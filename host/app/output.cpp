@@ -158,6 +158,12 @@ void checkTextPath(const std::string& path) {
     if (!std::filesystem::is_directory(folder, ignored)) throwBadInput(path, "its folder does not exist");
 }
 
+void makeFolder(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (!isWritableFolder(folder)) throwBadInput(folder, "cannot be made, or nothing can be written there");
+}
+
 void writeText(const std::string& path, const std::string& text) {
     const std::string temporary = fmt::format("{}.{}.tmp", path, processId());
     {

@@ -29,6 +29,10 @@ void writeOutputs(const OutputRequest& request, const Film& film, const SceneRun
 /// Throws Error (bad input) early if `path` names a folder or its own folder does not exist.
 void checkTextPath(const std::string& path);
 
+/// Makes the folder, and those above it, unless it is there. Throws Error (bad input), which names it, if that fails or
+/// nothing can be written there.
+void makeFolder(const std::string& folder);
+
 /// Writes a text file to a temporary name, flushed and renamed. Throws Error.
 void writeText(const std::string& path, const std::string& text);
 

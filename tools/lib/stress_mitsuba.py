@@ -26,6 +26,7 @@ STUDENT_7 = 2.3646  # the 97.5 % quantile of seven degrees of freedom
 NORMAL = 1.9600
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 LARGEST_ALPHA = 0.1  # beyond, light reflected more than once by a metal's facets, which Mitsuba leaves out, is seen
+LARGEST_NEAR = 1e12  # of a near plane
 
 
 class Inexpressible(Exception):
@@ -79,12 +80,22 @@ def properties(material):
     return found
 
 
+def matrix_of(owner, key):
+    return np.array(owner[key]).reshape(4, 4)
+
+
+def vertices(body):
+    """In the world, rounded once: the best that single precision can hold."""
+    matrix = matrix_of(body, "worldFromObject")
+    return (np.array(body["positions"]).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
+
+
+def triangles(body):
+    return np.array(body["triangles"], dtype=np.uint32).reshape(-1, 3)
+
+
 def mesh(body, materials, name):
-    """Vertices in the world, rounded once: the best that single precision can hold."""
-    matrix = np.array(body["worldFromObject"]).reshape(4, 4)
-    local = np.array(body["positions"]).reshape(-1, 3)
-    world = (local @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
-    faces = np.array(body["triangles"], dtype=np.uint32).reshape(-1, 3)
+    matrix, world, faces = matrix_of(body, "worldFromObject"), vertices(body), triangles(body)
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
     props = mi.Properties()
@@ -111,16 +122,70 @@ def light(entry):
     raise Inexpressible("spots")
 
 
+def to_segments(point, begins, ends):
+    """The distances from a point."""
+    along, to_point = ends - begins, point - begins
+    squares = np.sum(along * along, axis=1)
+    share = np.divide(np.sum(to_point * along, axis=1), squares, out=np.zeros_like(squares), where=squares > 0)
+    return np.linalg.norm(to_point - np.clip(share, 0, 1)[:, None] * along, axis=1)
+
+
+def to_triangles(point, corners):
+    """The distances from a point: to the nearest edge or, from points above a triangle, to its plane."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    edges = [(a, b), (b, c), (c, a)]
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal, axis=1)
+    above = length > 0
+    for begin, end in edges:
+        above &= np.sum(np.cross(normal, end - begin) * (point - begin), axis=1) >= 0
+    height = np.abs(np.sum(normal * (point - a), axis=1))
+    planes = np.divide(height, length, out=np.full_like(length, np.inf), where=above)
+    return np.min([planes, *(to_segments(point, begin, end) for begin, end in edges)], axis=0)
+
+
+def reach(scene, eye):
+    """The distances of the nearest and the farthest point of all shapes, rounded to single precision; 1 without any."""
+    nearest, farthest = [], []
+    for body in scene["meshes"]:
+        corners = vertices(body).astype(np.float64)[triangles(body)]
+        if len(corners):
+            nearest.append(to_triangles(eye, corners).min())
+            farthest.append(np.linalg.norm(corners - eye, axis=2).max())
+    for sphere in scene["spheres"]:
+        distance, radius = np.linalg.norm(np.float64(np.float32(sphere["center"])) - eye), sphere["radius"]
+        nearest.append(abs(distance - radius))
+        farthest.append(distance + radius)
+    return float(min(nearest, default=1.0)), float(max(farthest, default=1.0)) or 1.0
+
+
+def near_plane(scene, nearest, farthest):
+    """Before all that is seen, so that it clips nothing, in the corners of wide images too, where it is farther off.
+
+    Rays begin on it. Chosen by the scene's size alone, it would cut away what is close to the camera in a large scene.
+    It is not much nearer than need be, nor as far as it might be: a direction is a point of the plane, normalised,
+    whose squares leave single precision below 1e-19 and above 1e19. From an eye on a surface (at 0 but for rounding)
+    rays begin a little off it. Parallel rays begin beside the eye, where something may lie at any depth: a little way
+    as well.
+    """
+    little = 1e-7 * farthest
+    if scene["camera"]["orthographic"] or nearest < 1e-13 * farthest:
+        return min(little, LARGEST_NEAR)
+    slope = math.tan(scene["camera"]["yfov"] / 2)
+    corner = math.hypot(1, slope, slope * scene["width"] / scene["height"])
+    return min(0.5 * nearest / corner, LARGEST_NEAR)
+
+
 def sensor(scene):
     """Its planes before and behind whatever there is: both renderers are to see it all."""
-    camera, matrix = scene["camera"], np.array(scene["camera"]["worldFromCamera"]).reshape(4, 4)
+    camera, matrix = scene["camera"], matrix_of(scene["camera"], "worldFromCamera")
     film = {"type": "hdrfilm", "width": scene["width"], "height": scene["height"], "pixel_format": "rgb",
             "component_format": "float32", "rfilter": {"type": "box"}}
     if scene["aperture"]:
         raise Inexpressible("thin lenses")
-    eye = matrix[:3, 3]
-    farthest = max([np.linalg.norm(point - eye) for point in corners(scene)], default=1.0) or 1.0
-    common = {"near_clip": 1e-5 * farthest, "far_clip": 10 * farthest, "film": film, "sampler": {"type": "independent"}}
+    nearest, farthest = reach(scene, np.float64(np.float32(matrix[:3, 3])))
+    common = {"near_clip": near_plane(scene, nearest, farthest), "far_clip": 10 * farthest, "film": film,
+              "sampler": {"type": "independent"}}
     turned = np.array(turned_about(matrix.tolist()))
     if not camera["orthographic"]:
         return {"type": "perspective", "fov": math.degrees(camera["yfov"]), "fov_axis": "y",
@@ -129,16 +194,6 @@ def sensor(scene):
         raise Inexpressible("orthographic images that are not square")
     turned[:3, :2] *= camera["ymag"]
     return {"type": "orthographic", "to_world": mi.ScalarTransform4f(turned), **common}
-
-
-def corners(scene):
-    for body in scene["meshes"]:
-        matrix = np.array(body["worldFromObject"]).reshape(4, 4)
-        world = np.array(body["positions"]).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
-        yield from (world.min(axis=0), world.max(axis=0))
-    for sphere in scene["spheres"]:
-        yield np.array(sphere["center"]) + sphere["radius"]
-        yield np.array(sphere["center"]) - sphere["radius"]
 
 
 def load(scene):
@@ -174,10 +229,11 @@ def figures(scene, name):
         spp = max(1, scene["samples"] // SEEDS)
         images = [np.array(mi.render(loaded, spp=spp, seed=seed), dtype=np.float64)[..., :3] @ LUMINANCE
                   for seed in range(SEEDS)]
-        result["tried"] = SEEDS * spp * scene["width"] * scene["height"]
+        # Pixels, both: a mean that is not finite does not tell how many samples are not.
+        result["tried"] = sum(image.size for image in images)
         result["nonFinite"] = int(sum(np.count_nonzero(~np.isfinite(image)) for image in images))
         if result["nonFinite"]:
-            result["failure"] = f"{result['nonFinite']} pixels NaN or infinite"
+            result["failure"] = f"{result['nonFinite']} of {result['tried']} pixels NaN or infinite"
         elif scene["truth"][1]:
             result["error"] = deviation([image.mean() for image in images], scene["truth"])
     except RuntimeError as error:
@@ -220,4 +276,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(130)
