@@ -30,21 +30,27 @@ void requireComparable(const Film& film, const Film& reference) {
 
 bool isLit(const PairedPixel& pixel) { return pixel.value != Vec3d(0.0) || pixel.reference != Vec3d(0.0); }
 
-/// Whether a film in single precision errs in a pixel so much that rounding explains the difference there.
-bool errsAsMuch(const PixelStatistics& single, const PixelStatistics& reference, double difference) {
-    const bool otherBranch = single.pathSignature != 0 && single.pathSignature != reference.pathSignature;
-    return !otherBranch && difference <= kRoundingFactor * relativeDifference(single.mean, reference.mean);
+/// Whether the films in single precision err in a pixel so much that rounding explains the difference there.
+bool isRounding(double difference, const PixelStatistics& reference, std::span<const Film> singles, std::size_t index) {
+    const auto onBranch = [&](const Film& single) {
+        const std::uint64_t signature = single.pixels[index].pathSignature;
+        return signature == 0 || signature == reference.pathSignature;
+    };
+    const auto errsAsMuch = [&](const Film& single) {
+        return difference <= kRoundingFactor * relativeDifference(single.pixels[index].mean, reference.mean);
+    };
+    if (std::ranges::any_of(singles, [&](const Film& single) { return onBranch(single) && errsAsMuch(single); }))
+        return true;
+    return singles.size() >= kUntoldAfter && std::ranges::none_of(singles, onBranch) &&
+           std::ranges::any_of(singles, errsAsMuch);
 }
 
 Explanation explain(const PairedPixel& pixel, const PixelStatistics& reference, const PairedOptions& options,
                     std::size_t index) {
     if (pixel.relativeDifference <= options.tolerance) return Explanation::withinTolerance;
     if (pixel.signature == Signature::different) return Explanation::otherBranch;
-    const bool rounding =
-        std::any_of(options.singlePrecision.begin(), options.singlePrecision.end(), [&](const Film& single) {
-            return errsAsMuch(single.pixels[index], reference, pixel.relativeDifference);
-        });
-    return rounding ? Explanation::rounding : Explanation::none;
+    return isRounding(pixel.relativeDifference, reference, options.singlePrecision, index) ? Explanation::rounding
+                                                                                           : Explanation::none;
 }
 
 PairedPixel makePixel(const Film& film, const Film& reference, const PairedOptions& options, std::size_t index) {

@@ -56,7 +56,8 @@ struct PairedOptions {
     /// The reference's films in single precision, if the film under test is: some paths (between spheres, say) amplify
     /// rounding thousandfold, and then two correct programs differ as much from double as from each other. A pixel
     /// whose difference is at most kRoundingFactor times that of any of these is explained by rounding. One with path
-    /// signatures counts only where they are the reference's: another branch is no rounding error.
+    /// signatures counts only where they are the reference's, as another branch is no rounding error, unless
+    /// kUntoldAfter of them agree that the branch cannot be told.
     std::span<const Film> singlePrecision;
 };
 
@@ -65,6 +66,12 @@ struct PairedOptions {
 /// 0.6 % of the pixels whose rounding matters. All of k films whose rounding is independent are in E[(2 Phi(|x|/100) -
 /// 1)^k], x normal, so about (2/pi)^(k/2) 100^-k E|x|^k: 6e-5, 8e-7 and 1e-8 for k = 2, 3, 4.
 inline constexpr double kRoundingFactor = 100.0;
+
+/// With this many films of single precision all of which left the reference's branch in a pixel, that precision cannot
+/// tell the branch there, and rounding explains what one that met it is off by, to the same factor. A mistake is not
+/// hidden so: few pixels are of that kind (11 of 134,000 lit ones in six scenes with meshes of many small triangles),
+/// whatever else is wrong.
+inline constexpr std::size_t kUntoldAfter = 4;
 
 /// Compares the films of one scene, seed and range of samples, rendered with path signatures. Throws Error (bad input)
 /// if their sizes or sample counts differ.

@@ -400,6 +400,12 @@ TEST(Paired, RoundingIsWhatAnyFilmInSinglePrecisionShows) {
     Film elsewhere = planted(0.5);
     elsewhere.at(2, 1).pathSignature = 18;
     EXPECT_EQ(unexplained({planted(0.0), elsewhere}), 1u);
+    EXPECT_EQ(unexplained({elsewhere, elsewhere, elsewhere}), 1u) << "three may meet an edge by chance";
+    EXPECT_EQ(unexplained({elsewhere, elsewhere, elsewhere, planted(0.0)}), 1u) << "the branch can be told";
+    EXPECT_EQ(unexplained({elsewhere, elsewhere, elsewhere, elsewhere}), 0u);
+    Film near = planted(1.9e-4);
+    near.at(2, 1).pathSignature = 18;
+    EXPECT_EQ(unexplained({near, near, near, near}), 1u) << "rounding that small explains no 2 %";
     elsewhere.at(2, 1).pathSignature = 0;
     EXPECT_EQ(unexplained({elsewhere}), 0u) << "a film without signatures";
 }
