@@ -18,7 +18,7 @@ constexpr const char* kStyle = R"(
 @media (prefers-color-scheme:dark){:root{--ink:#e6ebf1;--soft:#9aa7b6;--line:#303a46;--page:#11161c;--card:#181f27;
  --s0:#6bb1ff;--s1:#ffa45c;--s2:#9aa7b6;--s3:#cf9bf0;--s4:#56d6a6;--bad:#ff7b86;--good:#5fd79e}}
 *{box-sizing:border-box}body{margin:0;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
-main{max-width:60rem;margin:0 auto;padding:1rem}h1{font-size:1.6rem}h2{margin:2.5rem 0 .5rem;font-size:1.25rem}
+main{max-width:80rem;margin:0 auto;padding:1rem}p,section.sweep{max-width:60rem}h1{font-size:1.6rem}h2{margin:2.5rem 0 .5rem;font-size:1.25rem}
 h3{margin:0;font-size:1rem}p{margin:.4rem 0}.soft{color:var(--soft);font-size:.9rem}
 section.sweep{background:var(--card);border:1px solid var(--line);border-radius:.6rem;padding:1rem;margin:1rem 0}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.85rem;width:100%}
