@@ -99,10 +99,9 @@ PlannedSweep besideSweep(Extent extent) {
                             "ratio of their radiance",
                             StressAxis::logarithmic,
                             "Radiance is scaled so that what lies halfway between the lights, in logarithms, is near "
-                            "1, but the brighter at "
-                            "most 2^30: the dim one is then 1e-27, and normal numbers end at 1.2e-38. Nearly all light "
-                            "samples go to the lamp and every one must be blocked by the walls: a single "
-                            "leak would be seen. The room is found by scattering.",
+                            "1, but the brighter at most 2^30: the dim one is then 1e-27, and normal numbers end at "
+                            "1.2e-38. Nearly all light samples go to the lamp and every one must be blocked by the "
+                            "walls: a single leak would be seen. The room is found by scattering.",
                             {}};
     return {about, thinned(stepsBy({0, 36, 4}, brightBesideDim), extent)};
 }

@@ -106,6 +106,20 @@ TEST_F(LostDevice, VerifyAsksToTryAgain) {
     expectTryAgain(runFaulty(verify, "ISOLUX_FAULT_AFTER=2"), "VK_ERROR_DEVICE_LOST");
 }
 
+/// The families that were whole and the steps of the one that was not; how many dispatches a step takes is not known.
+TEST_F(LostDevice, StressKeepsTheStepsThatWereWhole) {
+    const std::string stress = "stress --quick --progress none --family scale -o '" + file("out") + "'";
+    std::uint64_t steps = 0;
+    for (std::uint64_t after = 1; steps == 0; after *= 2) {
+        const ProgramResult result = runFaulty(stress, "ISOLUX_FAULT_AFTER=" + std::to_string(after));
+        expectTryAgain(result, "VK_ERROR_DEVICE_LOST");
+        ASSERT_EQ(result.exitCode, kTryAgain) << "done before the second step after " << after << " submissions";
+        std::ifstream stream(file("out") + "/stress.json");
+        for (const nlohmann::json& family : nlohmann::json::parse(stream)["families"])
+            for (const nlohmann::json& sweep : family["sweeps"]) steps += sweep["steps"].size();
+    }
+}
+
 /// Memory runs out at the first allocation, the second, and so on to the last.
 TEST_F(LostDevice, OutOfMemoryLeavesNoFile) {
     constexpr int kMostAllocations = 100;
