@@ -115,7 +115,8 @@ TEST_F(LostDevice, StressKeepsTheStepsThatWereWhole) {
         expectTryAgain(result, "VK_ERROR_DEVICE_LOST");
         ASSERT_EQ(result.exitCode, kTryAgain) << "done before the second step after " << after << " submissions";
         std::ifstream stream(file("out") + "/stress.json");
-        for (const nlohmann::json& family : nlohmann::json::parse(stream)["families"])
+        const nlohmann::json report = nlohmann::json::parse(stream);
+        for (const nlohmann::json& family : report["families"])
             for (const nlohmann::json& sweep : family["sweeps"]) steps += sweep["steps"].size();
     }
 }
