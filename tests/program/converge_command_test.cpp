@@ -178,7 +178,8 @@ TEST_F(ConvergeCommandTest, RendersThatStopByThemselvesEndWithACheckpoint) {
         converge("-q --no-images --max-spp 256 --reference-spp 512 --variant 'adaptive:--adaptive 0.02' "
                  "--variant 'error:--until-error 0.1'");
     ASSERT_EQ(result.exitCode, 0) << result.output;
-    for (const json& variant : report().at("variants")) {
+    const json written = report();
+    for (const json& variant : written.at("variants")) {
         const json& last = variant.at("checkpoints").back();
         EXPECT_EQ(last.at("calibration").at("meanLuminance").at("total"), 3) << variant.at("name");
         if (variant.at("name") != "error") continue;
